@@ -1,0 +1,43 @@
+#pragma once
+
+#include <cstdint>
+#include <random>
+
+namespace nextview {
+
+/// What random numbers are drawn for; keeps the streams of one view apart. Never renumber.
+enum class RandomPurpose : std::uint32_t {
+  RangeNoise = 1,
+  InitialSimplex = 2,
+};
+
+/// A stream of random numbers that depends on (seed, view, attempt, purpose) alone.
+///
+/// The engine and its seeding are those of the C++ standard, which fixes every bit of both; the
+/// standard's distributions are not fixed, so the mappings to numbers are here.
+class RandomStream {
+ public:
+  RandomStream(std::int64_t seed, int view, int attempt, RandomPurpose purpose) {
+    const auto bits = static_cast<std::uint64_t>(seed);
+    std::seed_seq sequence{static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32),
+                           static_cast<std::uint32_t>(view), static_cast<std::uint32_t>(attempt),
+                           static_cast<std::uint32_t>(purpose)};
+    engine_.seed(sequence);
+  }
+
+  /// Uniform in [0, 1), a multiple of 2^-53.
+  double uniform() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
+
+  /// Uniform in {0, ..., count - 1}; count > 0. Lemire's multiplication, its bias below 2^-32.
+  std::uint32_t below(std::uint32_t count) {
+    return static_cast<std::uint32_t>(((engine_() >> 32) * count) >> 32);
+  }
+
+  /// Standard normal (Box and Muller); uses the platform's log and cos.
+  double gaussian();
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+}  // namespace nextview
