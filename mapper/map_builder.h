@@ -1,0 +1,76 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mapper/voxel_map.h"
+#include "sensor_sim/range_image.h"
+
+namespace nextview {
+
+/// What folding one range image did.
+struct FoldReport {
+  std::int64_t points = 0;          ///< finite ranges whose point lies inside the window
+  std::int64_t points_outside = 0;  ///< finite ranges whose point lies outside the window
+  std::int64_t no_returns = 0;      ///< +inf: known free up to the sensor's largest range
+  std::int64_t invalid = 0;         ///< NaN: nothing known
+  std::int64_t newly_occupied = 0;  ///< voxels that became Occupied
+  /// Slots (VoxelMap::slot) whose label differs from before the fold, each once; in a fixed order
+  /// that depends on the image and the map alone.
+  std::vector<std::uint32_t> changed_slots;
+  /// A box that holds every changed voxel, rounded out to blocks of 8 and clipped to the window;
+  /// of size zero when nothing changed.
+  MapWindow changed_box = {VoxelIndex::Zero(), VoxelIndex::Zero()};
+};
+
+/// What a commit says about a map.
+struct MapStatistics {
+  std::array<std::int64_t, kLabelCount> voxels = {};  ///< by Label; they sum to the window's volume
+  std::int64_t occupied_faces = 0;         ///< faces of Occupied voxels that touch an Empty voxel
+  std::int64_t occlusion_plane_faces = 0;  ///< the same of OcclusionPlane voxels
+  double occupied_area_m2 = 0.0;           ///< P13: faces times a face's area
+  double occlusion_plane_area_m2 = 0.0;
+  /// Over the Occupied voxels, in [0, 1]; a voxel none of whose points had a normal counts as 0.
+  /// Both are 0 when no voxel is Occupied.
+  double mean_quality = 0.0;
+  double min_quality = 0.0;
+};
+
+/// A voxel map and everything that is kept right with every range image folded into it: labels,
+/// surface data, occlusion planes, areas, digest (P8-P13). The mapper and the planner each run one
+/// over the same range images. The cost of a fold grows with what the scan touches, not with the
+/// map. Same images, same map, bit for bit, whatever the compiler or instruction set.
+class MapBuilder {
+ public:
+  /// An all-Unmarked map.
+  /// @throws std::invalid_argument as VoxelMap does
+  MapBuilder(const VoxelGrid& grid, const MapWindow& window);
+  ~MapBuilder();
+  MapBuilder(MapBuilder&&) noexcept;
+  MapBuilder& operator=(MapBuilder&&) noexcept;
+
+  /// Updates the map by one range image (P12). The report stays valid until the next fold.
+  /// @throws std::invalid_argument, the map unchanged, when the sensor lies outside the window or
+  ///         the image cannot be right: sizes that disagree, fewer than 2 x 2 pixels, a ray table
+  ///         or matrix that is no rotation, limits that are not 0 <= min < max, a negative range
+  const FoldReport& fold(const RangeImage& image);
+
+  const VoxelMap& map() const;
+  MapStatistics statistics() const;
+
+  /// The digest of the whole map, 32 hex digits; see map_digest.h. Only what changed since the last
+  /// call is hashed again.
+  std::string digest();
+
+  /// Bytes of heap memory in use, the map's own included.
+  std::size_t memory_bytes() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace nextview
