@@ -1,0 +1,156 @@
+#include "planner/feasibility.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <stdexcept>
+#include <string>
+
+namespace nextview {
+
+namespace {
+
+void require(bool holds, const char* parameter, const char* rule) {
+  if (!holds) throw std::invalid_argument(std::string(parameter) + " must be " + rule);
+}
+
+bool is_length(double length_m) { return length_m >= 0.0 && length_m <= 5.0; }
+
+// The least squared distance, in whole voxels, that is not nearer than a length.
+int squared_voxels(double length_m, double voxel_size_m) {
+  const double voxels = length_m / voxel_size_m;
+  // 0.3 / 0.1 is a little below 3: a length of whole voxels must not lose one to rounding.
+  return static_cast<int>(std::ceil(voxels * voxels - 1e-6));
+}
+
+double distance_to_segment(const Eigen::Vector3d& point, const Eigen::Vector3d& from,
+                           const Eigen::Vector3d& to) {
+  const Eigen::Vector3d along = to - from;
+  const double squared_length = along.squaredNorm();
+  const double t =
+      squared_length > 0.0 ? std::clamp((point - from).dot(along) / squared_length, 0.0, 1.0) : 0.0;
+  return (from + t * along - point).norm();
+}
+
+}  // namespace
+
+void FeasibilityParameters::check() const {
+  require(is_length(clearance_m), "clearance_m", "a length from 0 to 5 m");
+  require(is_length(body_radius_m), "body_radius_m", "a length from 0 to 5 m");
+  require(is_length(departure_m), "departure_m", "a length from 0 to 5 m");
+  for (int axis = 0; axis < 3; ++axis) {
+    require(workspace_min_m[axis] < workspace_max_m[axis], "workspace_min_m",
+            "below workspace_max_m on every axis");
+  }
+  require(lift_min_m <= lift_max_m, "lift_min_m", "at most lift_max_m");
+}
+
+std::vector<VoxelIndex> voxels_along(const VoxelGrid& grid, const Eigen::Vector3d& from_m,
+                                     const Eigen::Vector3d& to_m) {
+  VoxelIndex voxel = grid.voxel_of(from_m);
+  const VoxelIndex last = grid.voxel_of(to_m);
+  const VoxelIndex left = (last - voxel).cwiseAbs();
+  std::vector<VoxelIndex> voxels = {voxel};
+  voxels.reserve(static_cast<std::size_t>(left.sum()) + 1);
+  while (voxel != last) {
+    // Step along the axis whose next voxel boundary comes first on the way, t in [0, 1].
+    int next_axis = -1;
+    double next_t = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+      if (voxel[axis] == last[axis]) continue;
+      const double side = last[axis] > voxel[axis] ? 0.5 : -0.5;
+      const double boundary =
+          grid.origin_m[axis] + (static_cast<double>(voxel[axis]) + side) * grid.voxel_size_m;
+      const double t = (boundary - from_m[axis]) / (to_m[axis] - from_m[axis]);
+      if (next_axis < 0 || t < next_t) {
+        next_axis = axis;
+        next_t = t;
+      }
+    }
+    voxel[next_axis] += last[next_axis] > voxel[next_axis] ? 1 : -1;
+    voxels.push_back(voxel);
+  }
+  return voxels;
+}
+
+FeasibleSpace::FeasibleSpace(const VoxelMap& map, const FeasibilityParameters& parameters,
+                             const Eigen::Vector3d& present_m, std::span<const SensorPose> refused)
+    : map_(map), parameters_(parameters), present_m_(present_m) {
+  parameters.check();
+  present_ = map.grid().voxel_of(present_m);
+  if (!map.contains(present_)) {
+    throw std::invalid_argument("the sensor stands outside the map's window");
+  }
+  for (const SensorPose& pose : refused) refused_m_.push_back(pose.position_m);
+
+  const double voxel_size_m = map.grid().voxel_size_m;
+  clear_ = squared_voxels(parameters.clearance_m, voxel_size_m);
+  body_ = squared_voxels(parameters.body_radius_m, voxel_size_m);
+  departure_ = squared_voxels(parameters.departure_m, voxel_size_m);
+  const int limit = std::max(clear_, body_);
+  const int reach = static_cast<int>(std::sqrt(static_cast<double>(limit)));
+  for (int k = -reach; k <= reach; ++k) {
+    for (int j = -reach; j <= reach; ++j) {
+      for (int i = -reach; i <= reach; ++i) {
+        const VoxelIndex step(i, j, k);
+        if (step.squaredNorm() < limit) offsets_.push_back({step, step.squaredNorm()});
+      }
+    }
+  }
+  std::stable_sort(offsets_.begin(), offsets_.end(), [](const Offset& a, const Offset& b) {
+    return a.squared_length < b.squared_length;
+  });
+}
+
+bool FeasibleSpace::reachable(const Eigen::Vector3d& position_m) {
+  return within_limits(position_m) && !is_refused(position_m) && path_clear(position_m);
+}
+
+bool FeasibleSpace::within_limits(const Eigen::Vector3d& position_m) const {
+  return position_m.allFinite() &&
+         (position_m.array() >= parameters_.workspace_min_m.array()).all() &&
+         (position_m.array() <= parameters_.workspace_max_m.array()).all() &&
+         position_m.z() >= parameters_.lift_min_m && position_m.z() <= parameters_.lift_max_m;
+}
+
+bool FeasibleSpace::is_refused(const Eigen::Vector3d& position_m) const {
+  for (const Eigen::Vector3d& refused_m : refused_m_) {
+    const double berth_m = std::min(parameters_.clearance_m, 0.5 * (refused_m - present_m_).norm());
+    if (distance_to_segment(refused_m, present_m_, position_m) <= berth_m) return true;
+  }
+  return false;
+}
+
+bool FeasibleSpace::path_clear(const Eigen::Vector3d& position_m) {
+  const int at_present = surroundings(present_).nearest_occupied;
+  bool got_clear = at_present == clear_;
+  for (const VoxelIndex& voxel : voxels_along(map_.grid(), present_m_, position_m)) {
+    if (voxel == present_) continue;
+    if (map_.label(voxel) != Label::Empty) return false;
+    const Surroundings& near = surroundings(voxel);
+    if (near.unknown_near) return false;
+    if (near.nearest_occupied < (got_clear ? clear_ : at_present)) return false;
+    got_clear = got_clear || near.nearest_occupied == clear_;
+  }
+  return true;
+}
+
+const FeasibleSpace::Surroundings& FeasibleSpace::surroundings(const VoxelIndex& voxel) {
+  const auto [entry, inserted] = known_.try_emplace(map_.slot(voxel));
+  Surroundings& result = entry->second;
+  if (!inserted) return result;
+  result.nearest_occupied = clear_;
+  for (const auto& [step, squared_length] : offsets_) {
+    const VoxelIndex neighbour = voxel + step;
+    const Label label = map_.label(neighbour);
+    if (label == Label::Empty) continue;
+    if (label == Label::Occupied) {
+      result.nearest_occupied = std::min(result.nearest_occupied, squared_length);
+    } else if (squared_length < body_ && (neighbour - present_).squaredNorm() >= departure_) {
+      result.unknown_near = true;
+    }
+  }
+  return result;
+}
+
+}  // namespace nextview

@@ -1,0 +1,124 @@
+#include "planner/termination.h"
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+
+namespace nextview {
+
+namespace {
+
+constexpr std::array<StopReason, 8> kStopReasons = {
+    StopReason::NothingNew,     StopReason::QualityReached, StopReason::ViewLimit,
+    StopReason::NoFeasibleGoal, StopReason::DigestMismatch, StopReason::NoAnswer,
+    StopReason::ProcessDied,    StopReason::Interrupted};
+
+bool nothing_new(std::span<const ViewFacts> views, const StopParameters& parameters) {
+  const auto window = static_cast<std::size_t>(parameters.stop_window_views);
+  if (views.size() <= window) return false;
+  double area_m2 = 0.0;
+  for (const ViewFacts& view : views.last(window)) area_m2 += view.newly_occupied_area_m2;
+  return area_m2 < parameters.stop_new_area_m2;
+}
+
+}  // namespace
+
+std::span<const StopReason> all_stop_reasons() { return kStopReasons; }
+
+std::string_view to_string(StopReason reason) {
+  switch (reason) {
+    case StopReason::NothingNew:
+      return "nothing_new";
+    case StopReason::QualityReached:
+      return "quality_reached";
+    case StopReason::ViewLimit:
+      return "view_limit";
+    case StopReason::NoFeasibleGoal:
+      return "no_feasible_goal";
+    case StopReason::DigestMismatch:
+      return "digest_mismatch";
+    case StopReason::NoAnswer:
+      return "no_answer";
+    case StopReason::ProcessDied:
+      return "process_died";
+    case StopReason::Interrupted:
+      return "interrupted";
+  }
+  throw std::invalid_argument("not a stop reason");
+}
+
+std::optional<StopReason> stop_reason_from_string(std::string_view name) {
+  for (const StopReason reason : kStopReasons) {
+    if (to_string(reason) == name) return reason;
+  }
+  return std::nullopt;
+}
+
+int exit_status(StopReason reason) {
+  switch (reason) {
+    case StopReason::NothingNew:
+    case StopReason::QualityReached:
+    case StopReason::ViewLimit:
+      return 0;
+    case StopReason::NoFeasibleGoal:
+      return 3;
+    case StopReason::DigestMismatch:
+      return 4;
+    case StopReason::NoAnswer:
+      return 5;
+    case StopReason::ProcessDied:
+      return 6;
+    case StopReason::Interrupted:
+      return 130;
+  }
+  throw std::invalid_argument("not a stop reason");
+}
+
+std::string_view describe(StopReason reason) {
+  switch (reason) {
+    case StopReason::NothingNew:
+      return "No more unseen area is covered.";
+    case StopReason::QualityReached:
+      return "No more unseen area is covered, and every voxel's quality is above the threshold.";
+    case StopReason::ViewLimit:
+      return "As many views as asked for have been taken.";
+    case StopReason::NoFeasibleGoal:
+      return "No attempt gave a goal that the base could reach.";
+    case StopReason::DigestMismatch:
+      return "The planner and the mapper made different maps of the same range images.";
+    case StopReason::NoAnswer:
+      return "A process did not answer, however often it was asked.";
+    case StopReason::ProcessDied:
+      return "A process ended before the run did.";
+    case StopReason::Interrupted:
+      return "The run was interrupted by a signal.";
+  }
+  throw std::invalid_argument("not a stop reason");
+}
+
+void StopParameters::check() const {
+  if (max_views < 1) throw std::invalid_argument("max_views must be at least 1");
+  if (!(quality_threshold >= 0.0 && quality_threshold <= 1.0)) {
+    throw std::invalid_argument("quality_threshold must lie between 0 and 1");
+  }
+  if (stop_window_views < 1) throw std::invalid_argument("stop_window_views must be at least 1");
+  if (!(stop_new_area_m2 >= 0.0) || !std::isfinite(stop_new_area_m2)) {
+    throw std::invalid_argument("stop_new_area_m2 must be an area of 0 or more");
+  }
+}
+
+ViewFacts view_facts(std::int64_t newly_occupied_voxels, double voxel_size_m, double min_quality) {
+  return {static_cast<double>(newly_occupied_voxels) * voxel_size_m * voxel_size_m, min_quality};
+}
+
+std::optional<StopReason> should_stop(std::span<const ViewFacts> views,
+                                      const StopParameters& parameters) {
+  if (nothing_new(views, parameters)) {
+    if (!parameters.use_quality) return StopReason::NothingNew;
+    if (views.back().min_quality >= parameters.quality_threshold) return StopReason::QualityReached;
+  }
+  if (views.size() >= static_cast<std::size_t>(parameters.max_views)) return StopReason::ViewLimit;
+  return std::nullopt;
+}
+
+}  // namespace nextview

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
+#include <vector>
+
+namespace nextview {
+
+/// Why a run ended. README lists the names and exit statuses; the first three are a success.
+enum class StopReason {
+  NothingNew,      ///< P23 rule 1: no more unseen area is covered
+  QualityReached,  ///< P23 rule 2: the same, and every voxel's quality is above the threshold
+  ViewLimit,       ///< as many views as asked for
+  NoFeasibleGoal,  ///< no attempt gave a goal that the base accepted
+  DigestMismatch,  ///< planner and mapper hold different maps
+  NoAnswer,        ///< somebody did not answer, however often asked
+  ProcessDied,     ///< a process of the run ended before the run did
+  Interrupted,     ///< SIGINT or SIGTERM
+};
+
+/// All reasons, in order.
+std::span<const StopReason> all_stop_reasons();
+/// The name a reason has in logs and tables, such as "nothing_new".
+std::string_view to_string(StopReason reason);
+/// The reason of that name, or nothing when there is none.
+std::optional<StopReason> stop_reason_from_string(std::string_view name);
+/// What ./run returns: 0 for a success, otherwise different for each reason.
+int exit_status(StopReason reason);
+/// One sentence for people.
+std::string_view describe(StopReason reason);
+
+/// When a run has recovered what it can (P23).
+struct StopParameters {
+  int max_views = 60;
+  bool use_quality = false;        ///< rule 2 instead of rule 1
+  double quality_threshold = 0.8;  ///< rule 2: for every Occupied voxel's quality
+  int stop_window_views = 15;      ///< "no more": over this many views ...
+  double stop_new_area_m2 = 0.10;  ///< ... less newly Occupied area than this in all
+
+  /// @throws std::invalid_argument naming the parameter that cannot be
+  void check() const;
+};
+
+/// What the rules need to know of a view that has been folded into the map.
+struct ViewFacts {
+  /// Voxels that became Occupied x the area of a voxel's face, m^2.
+  double newly_occupied_area_m2 = 0.0;
+  double min_quality = 0.0;  ///< over all Occupied voxels, 0..1, after the view
+};
+
+/// The facts of a view from the mapper's counts.
+ViewFacts view_facts(std::int64_t newly_occupied_voxels, double voxel_size_m, double min_quality);
+
+/// Whether the run ends after these views, the last one just folded; nothing when it goes on.
+/// A rule of P23 goes before the view limit. Rule 1 needs stop_window_views whole views after the
+/// first one, which is the scan at the start and says nothing about the planner.
+std::optional<StopReason> should_stop(std::span<const ViewFacts> views,
+                                      const StopParameters& parameters);
+
+}  // namespace nextview
