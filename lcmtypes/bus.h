@@ -1,0 +1,141 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <span>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "lcmtypes/channels.h"
+#include "lcmtypes/decode.h"
+#include "lcmtypes/transport.h"
+
+namespace nextview {
+
+/// Thrown by a handler that finds a well-formed message impossible in its run (an unknown view,
+/// say) and has ignored it. The bus then drops it like any other message that cannot be right.
+class RejectedMessage : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What the bus has seen since the start.
+struct BusCounters {
+  std::int64_t delivered = 0;   ///< messages given to handlers
+  std::int64_t strangers = 0;   ///< messages of other runs, ignored
+  std::int64_t duplicates = 0;  ///< messages seen before, ignored
+  std::int64_t dropped = 0;     ///< messages that cannot be right
+  std::int64_t answered = 0;    ///< messages sent again because somebody asked
+};
+
+/// Typed publish and subscribe for one run, lossless for those who ask.
+///
+/// Every message is keyed (run, view, attempt, part). What is published is remembered to the end
+/// and sent again, the same bytes, to whoever requests it. Receivers see each key once. Whoever
+/// waits requests again on a timer of its own; nothing else keeps a run whole on a bus that may
+/// lose.
+class Bus {
+ public:
+  /// Joins a run over LCM.
+  /// @param lcm_url as LCM has it; empty: LCM_DEFAULT_URL, else LCM's default
+  /// @param role who speaks, for requests: sensor_sim, base_sim, ...
+  /// @throws BusError when the bus does not work here, saying what to type; never hangs
+  Bus(const std::string& lcm_url, std::int64_t run, std::string role);
+  /// Joins a run over any transport.
+  Bus(std::unique_ptr<Transport> transport, std::int64_t run, std::string role);
+  // Receivers point back at the bus.
+  Bus(const Bus&) = delete;
+  Bus& operator=(const Bus&) = delete;
+
+  std::int64_t run() const { return run_; }
+  const std::string& role() const { return role_; }
+  const BusCounters& counters() const { return counters_; }
+
+  /// Publishes a message of this run (sets message.run) and remembers it.
+  /// @throws std::logic_error when the message is not valid, larger than kMaxMessageBytes, or its
+  ///         key was published before with other bytes: all errors of the publisher's
+  template <class Message>
+  void publish(Message message) {
+    message.run = run_;
+    publish_bytes(Channel<Message>::name, key_of(message), Channel<Message>::answered,
+                  check(message), encode(message));
+  }
+
+  /// Calls the handler with every message of this run on the type's channel, each key once (status
+  /// messages and requests every time). One handler a type.
+  template <class Message>
+  void on(std::function<void(const Message&)> handler) {
+    transport_->subscribe(Channel<Message>::name, [this, handler = std::move(handler)](
+                                                      std::span<const std::uint8_t> bytes) {
+      deliver<Message>(bytes, handler);
+    });
+  }
+
+  /// Asks whoever published it for a message of a view.
+  /// @param view 0 for messages that belong to no view (run_config_t, stop_t, status_t)
+  /// @param attempt 0: all attempts there are
+  template <class Message>
+  void request(int view, int attempt) {
+    request_channel(Channel<Message>::name, view, attempt);
+  }
+
+  /// Called with every request that nothing published so far answers. Who should publish it one day
+  /// asks for what it needs itself. The handler sees everybody's requests and picks its own.
+  void on_missing(std::function<void(const request_t&)> handler);
+
+  /// Waits for one message and handles it.
+  /// @return false when none came within the timeout, or a signal interrupted the wait
+  /// @throws what a handler throws, RejectedMessage apart; BusError when the bus has broken down
+  bool handle(std::chrono::milliseconds timeout) { return transport_->handle(timeout); }
+
+ private:
+  template <class Message>
+  void deliver(std::span<const std::uint8_t> bytes,
+               const std::function<void(const Message&)>& handler);
+  void publish_bytes(std::string_view channel, const MessageKey& key, bool remember,
+                     const std::string& reason, std::vector<std::uint8_t> bytes);
+  void request_channel(std::string_view channel, int view, int attempt);
+  void answer(const request_t& request);
+  void drop(std::string_view channel, std::string_view reason);
+
+  std::unique_ptr<Transport> transport_;
+  std::int64_t run_;
+  std::string role_;
+  BusCounters counters_;
+  std::function<void(const request_t&)> missing_;
+  std::map<std::string, std::map<MessageKey, std::vector<std::uint8_t>>, std::less<>> published_;
+  std::map<std::string, std::set<MessageKey>, std::less<>> seen_;
+};
+
+template <class Message>
+void Bus::deliver(std::span<const std::uint8_t> bytes,
+                  const std::function<void(const Message&)>& handler) {
+  const std::string_view channel = Channel<Message>::name;
+  const Decoded<Message> decoded = decode_checked<Message>(bytes);
+  if (!decoded.message) return drop(channel, decoded.reason);
+  if (decoded.message->run != run_) {
+    ++counters_.strangers;
+    return;
+  }
+  const MessageKey key = key_of(*decoded.message);
+  if (Channel<Message>::answered && !seen_[std::string(channel)].insert(key).second) {
+    ++counters_.duplicates;
+    return;
+  }
+  try {
+    handler(*decoded.message);
+    ++counters_.delivered;
+  } catch (const RejectedMessage& rejected) {
+    seen_[std::string(channel)].erase(key);  // the right one may still come
+    drop(channel, rejected.what());
+  }
+}
+
+}  // namespace nextview
