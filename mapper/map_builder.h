@@ -21,6 +21,9 @@ struct FoldReport {
   /// Slots (VoxelMap::slot) whose label differs from before the fold, each once; in a fixed order
   /// that depends on the image and the map alone.
   std::vector<std::uint32_t> changed_slots;
+  /// Slots of the voxels whose surface data differs from before the fold, each once; in a fixed
+  /// order.
+  std::vector<std::uint32_t> updated_surfaces;
   /// A box that holds every changed voxel, rounded out to blocks of 8 and clipped to the window;
   /// of size zero when nothing changed.
   MapWindow changed_box = {VoxelIndex::Zero(), VoxelIndex::Zero()};

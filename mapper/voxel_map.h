@@ -83,6 +83,16 @@ class VoxelMap {
            static_cast<std::size_t>(index[1] & mask_[1]) << shift_[1] |
            static_cast<std::size_t>(index[2] & mask_[2]) << shift_[2];
   }
+  /// The voxel of the window that a slot holds; the inverse of slot(). Only of slots in use.
+  VoxelIndex index_of_slot(std::size_t slot) const {
+    VoxelIndex index;
+    for (int axis = 0; axis < 3; ++axis) {
+      const auto a = static_cast<std::size_t>(axis);
+      const int low = static_cast<int>(slot >> shift_[a]) & mask_[a];
+      index[axis] = window_.min[axis] + ((low - window_.min[axis]) & mask_[a]);
+    }
+    return index;
+  }
   std::span<Label> labels() { return labels_; }
   std::span<const Label> labels() const { return labels_; }
   /// Sides of the buffer, powers of two no smaller than the window's.

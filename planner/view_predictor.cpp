@@ -16,6 +16,11 @@ PredictionRaster prediction_raster(const TiltedLineScan& sensor, const RangeLimi
   return {make_ray_table(raster), limits.max_m};
 }
 
+double prediction_reach(const PredictionRaster& raster, double voxel_size_m) {
+  return std::clamp(raster.range_max_m / voxel_size_m, 1.0,
+                    static_cast<double>(IntegerLine::kMaxSteps));
+}
+
 QuantisedDirection quantise_direction(const Eigen::Vector3d& direction) {
   QuantisedDirection quantised;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -48,8 +53,7 @@ PlainViewPredictor::PlainViewPredictor(const PredictionRaster& raster, double vo
   if (!(voxel_size_m > 0.0) || !(raster.range_max_m > 0.0)) {
     throw std::invalid_argument("a view predictor's voxel size and range must be positive");
   }
-  const double reach = std::clamp(raster.range_max_m / voxel_size_m, 1.0,
-                                  static_cast<double>(IntegerLine::kMaxSteps));
+  const double reach = prediction_reach(raster, voxel_size_m);
   rays_.reserve(this->orientations().size() * rays_per_view_);
   for (const Orientation& orientation : this->orientations()) {
     const Eigen::Matrix3d rotation =

@@ -24,6 +24,10 @@ struct PredictionRaster {
 /// same apertures (P5).
 PredictionRaster prediction_raster(const TiltedLineScan& sensor, const RangeLimits& limits);
 
+/// How far a ray of the raster goes, in voxels: its range, at least 1 and at most
+/// IntegerLine::kMaxSteps.
+double prediction_reach(const PredictionRaster& raster, double voxel_size_m);
+
 /// The quality of a predicted view of a voxel (P9, P17) in integers, so that every way of computing
 /// it gives the same. The voxel's mean normal and the ray's direction are rounded to multiples of
 /// 1/SurfaceVoxel::kNormalUnit; |normal . ray| is then an integer of 1/2^28, of which the largest
@@ -56,9 +60,11 @@ class ViewPredictor {
   virtual void predict(const VoxelMap& map, const VoxelIndex& sensor,
                        std::span<ViewCounts> per_orientation) = 0;
 
-  /// To be called after every change of the map, with the slots whose label is different; a
-  /// predictor may keep what it derives from the labels up to date. It must be the same map.
-  virtual void map_changed(const VoxelMap& map, std::span<const std::uint32_t> changed_slots) = 0;
+  /// To be called after every change of the map, with the slots whose label is different and those
+  /// whose surface data is (FoldReport has both); a predictor may keep what it derives from them up
+  /// to date. It must be the same map.
+  virtual void map_changed(const VoxelMap& map, std::span<const std::uint32_t> changed_slots,
+                           std::span<const std::uint32_t> updated_surfaces) = 0;
 
  protected:
   ViewPredictor(std::vector<Orientation> orientations, bool counts_quality)
@@ -81,7 +87,8 @@ class PlainViewPredictor : public ViewPredictor {
 
   void predict(const VoxelMap& map, const VoxelIndex& sensor,
                std::span<ViewCounts> per_orientation) override;
-  void map_changed(const VoxelMap&, std::span<const std::uint32_t>) override {}
+  void map_changed(const VoxelMap&, std::span<const std::uint32_t>,
+                   std::span<const std::uint32_t>) override {}
 
  private:
   struct Ray {

@@ -1,0 +1,167 @@
+#include "planner/fast_view_predictor.h"
+
+#include <gtest/gtest.h>
+#include <hwy/targets.h>
+
+#include <algorithm>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "sensor_sim/sensor_pose.h"
+
+namespace nextview {
+namespace {
+
+constexpr double kVoxelSize = 0.1;
+
+// A room of free space with random blocks of everything in it, and random surfaces.
+VoxelMap random_map(std::mt19937& random, const VoxelIndex& min, const VoxelIndex& size) {
+  VoxelMap map({kVoxelSize, Eigen::Vector3d::Zero()}, {min, size});
+  const auto below = [&random](int n) {
+    return static_cast<int>(random() % static_cast<unsigned>(n));
+  };
+  std::fill(map.labels().begin(), map.labels().end(), Label::Empty);
+  for (int block = below(25); block > 0; --block) {
+    const VoxelIndex corner = min + VoxelIndex(below(size[0]), below(size[1]), below(size[2]));
+    const VoxelIndex extent = VoxelIndex(1 + below(6), 1 + below(6), 1 + below(6));
+    const auto label = static_cast<Label>(below(5));
+    for (int k = 0; k < extent[2]; ++k) {
+      for (int j = 0; j < extent[1]; ++j) {
+        for (int i = 0; i < extent[0]; ++i) {
+          const VoxelIndex index = corner + VoxelIndex(i, j, k);
+          if (!map.contains(index)) continue;
+          map.set_label(index, label);
+          if (label != Label::Occupied || below(8) == 0) continue;
+          SurfaceVoxel& surface = map.surface_at(index);
+          surface.normal_sum = {below(40000) - 20000, below(40000) - 20000, below(40000) - 20000};
+          surface.quality = static_cast<std::uint16_t>(below(65536));
+        }
+      }
+    }
+  }
+  return map;
+}
+
+PredictionRaster small_raster(int columns, int rows, double aperture_rad, double range_max_m) {
+  return {make_ray_table(TiltedLineScan::with_aperture(columns, rows, aperture_rad)), range_max_m};
+}
+
+// Axis-parallel, diagonal and icosahedron directions.
+std::vector<Orientation> directions() {
+  std::vector<Orientation> all = icosahedron_orientations();
+  for (int quarter = 0; quarter < 8; ++quarter) {
+    const double pan = quarter * std::numbers::pi / 4.0;
+    for (const double tilt : {0.0, std::numbers::pi / 4.0, -std::numbers::pi / 2.0}) {
+      all.push_back({pan, tilt, viewing_direction(pan, tilt)});
+    }
+  }
+  return all;
+}
+
+// Compares the two predictors from random places of random maps; returns the rays compared.
+std::int64_t compare(unsigned seed, int maps, int places, int threads) {
+  std::mt19937 random(seed);
+  std::int64_t rays = 0;
+  for (int round = 0; round < maps; ++round) {
+    const VoxelIndex size(3 + static_cast<int>(random() % 60), 3 + static_cast<int>(random() % 40),
+                          3 + static_cast<int>(random() % 30));
+    const VoxelIndex min(-static_cast<int>(random() % 50), static_cast<int>(random() % 50), -5);
+    const VoxelMap map = random_map(random, min, size);
+    // An odd raster, so that bundles need padding, whose middle column and row are axis-parallel.
+    const PredictionRaster raster =
+        small_raster(15, 9, std::numbers::pi / 3.0, round % 3 == 0 ? 1.7 : 30.0);
+    PlainViewPredictor plain(raster, kVoxelSize, directions(), true);
+    FastViewPredictor fast(raster, kVoxelSize, directions(), true, threads);
+    std::vector<ViewCounts> expected(directions().size());
+    std::vector<ViewCounts> counts(directions().size());
+    for (int place = 0; place < places; ++place) {
+      // Corners and faces of the window as well as its inside.
+      VoxelIndex sensor;
+      for (int axis = 0; axis < 3; ++axis) {
+        const auto extent = static_cast<unsigned>(size[axis]);
+        const auto choice = random() % 4;
+        const auto cell = choice == 0 ? 0 : choice == 1 ? extent - 1 : random() % extent;
+        sensor[axis] = min[axis] + static_cast<int>(cell);
+      }
+      plain.predict(map, sensor, expected);
+      fast.predict(map, sensor, counts);
+      EXPECT_TRUE(std::equal(counts.begin(), counts.end(), expected.begin()))
+          << "map " << round << " from " << sensor.transpose();
+      rays += static_cast<std::int64_t>(raster.rays.pixels() * counts.size());
+    }
+  }
+  return rays;
+}
+
+TEST(FastViewPredictor, AgreesWithThePlainOneOverAMillionRays) {
+  EXPECT_GE(compare(1, 40, 6, 1), 1'000'000);
+}
+
+TEST(FastViewPredictor, AgreesOnEveryInstructionSetOfThisProcessor) {
+  int targets = 0;
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+    hwy::SetSupportedTargetsForTest(target);
+    hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+    SCOPED_TRACE(ray_kernel_target());
+    EXPECT_GE(compare(2, 10, 4, 1), 200'000);
+    ++targets;
+  }
+  hwy::SetSupportedTargetsForTest(0);
+  hwy::GetChosenTarget().Update(hwy::SupportedTargets());
+  EXPECT_GE(targets, 1);
+}
+
+TEST(FastViewPredictor, AgreesWhateverTheNumberOfThreads) {
+  EXPECT_GE(compare(3, 6, 4, 2), 100'000);
+}
+
+TEST(FastViewPredictor, FollowsChangesOfTheMap) {
+  std::mt19937 random(11);
+  const VoxelIndex size(40, 30, 20);
+  const PredictionRaster raster = small_raster(16, 8, std::numbers::pi / 3.0, 30.0);
+  VoxelMap map = random_map(random, VoxelIndex::Zero(), size);
+  PlainViewPredictor plain(raster, kVoxelSize, icosahedron_orientations(), true);
+  FastViewPredictor fast(raster, kVoxelSize, icosahedron_orientations(), true);
+  std::vector<ViewCounts> expected(20);
+  std::vector<ViewCounts> counts(20);
+  for (int round = 0; round < 40; ++round) {
+    const VoxelMap next = random_map(random, VoxelIndex::Zero(), size);
+    std::vector<std::uint32_t> changed;
+    std::vector<std::uint32_t> updated;
+    for (int i = 0; i < 200; ++i) {
+      const VoxelIndex index(static_cast<int>(random() % 40), static_cast<int>(random() % 30),
+                             static_cast<int>(random() % 20));
+      const auto slot = static_cast<std::uint32_t>(map.slot(index));
+      if (map.label(index) != next.label(index)) {
+        map.set_label(index, next.label(index));
+        changed.push_back(slot);
+      }
+      if (map.label(index) == Label::Occupied) {
+        map.surface_at(index).normal_sum = {static_cast<int>(random() % 100), -50, 7};
+        updated.push_back(slot);
+      }
+    }
+    fast.map_changed(map, changed, updated);
+    plain.predict(map, VoxelIndex(20, 15, 10), expected);
+    fast.predict(map, VoxelIndex(20, 15, 10), counts);
+    ASSERT_EQ(counts, expected) << "round " << round;
+  }
+}
+
+TEST(FastViewPredictor, SaysWhatItCannotDo) {
+  const PredictionRaster raster = small_raster(4, 4, 1.0, 30.0);
+  EXPECT_THROW(FastViewPredictor(raster, kVoxelSize, {}, false), std::invalid_argument);
+  EXPECT_THROW(FastViewPredictor(raster, 0.0, directions(), false), std::invalid_argument);
+  EXPECT_THROW(FastViewPredictor(raster, kVoxelSize, directions(), false, 0),
+               std::invalid_argument);
+  FastViewPredictor fast(raster, kVoxelSize, directions(), false);
+  VoxelMap map({kVoxelSize, Eigen::Vector3d::Zero()}, {VoxelIndex::Zero(), VoxelIndex(8, 8, 8)});
+  std::vector<ViewCounts> counts(directions().size());
+  EXPECT_THROW(fast.predict(map, VoxelIndex(8, 0, 0), counts), std::invalid_argument);
+  counts.pop_back();
+  EXPECT_THROW(fast.predict(map, VoxelIndex(1, 1, 1), counts), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace nextview
