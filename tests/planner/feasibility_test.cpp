@@ -1,0 +1,178 @@
+#include "planner/feasibility.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <stdexcept>
+
+#include "sensor_sim/random_stream.h"
+
+namespace nextview {
+namespace {
+
+using Eigen::Vector3d;
+
+// 40 x 40 x 20 voxels of 0.1 m, all Empty, voxel centres at multiples of 0.1 m.
+class EmptyHall : public ::testing::Test {
+ protected:
+  EmptyHall() : map({0.1, Vector3d::Zero()}, {VoxelIndex::Zero(), VoxelIndex(40, 40, 20)}) {
+    fill({0, 0, 0}, {40, 40, 20}, Label::Empty);
+  }
+
+  void fill(const VoxelIndex& min, const VoxelIndex& end, Label label) {
+    for (int k = min[2]; k < end[2]; ++k) {
+      for (int j = min[1]; j < end[1]; ++j) {
+        for (int i = min[0]; i < end[0]; ++i) map.set_label({i, j, k}, label);
+      }
+    }
+  }
+  bool reachable(const Vector3d& position_m) {
+    return FeasibleSpace(map, parameters, present_m, refused).reachable(position_m);
+  }
+
+  VoxelMap map;
+  FeasibilityParameters parameters;
+  Vector3d present_m{1.0, 2.0, 1.0};
+  std::vector<SensorPose> refused;
+};
+
+TEST_F(EmptyHall, EverythingEmptyIsReachable) {
+  EXPECT_TRUE(reachable(present_m));
+  EXPECT_TRUE(reachable({3.0, 2.0, 1.0}));
+  EXPECT_TRUE(reachable({3.03, 3.07, 0.55}));
+}
+
+TEST_F(EmptyHall, AWallKeepsItsClearance) {
+  fill({30, 0, 0}, {31, 40, 20}, Label::Occupied);  // x = 3.0 m
+  EXPECT_TRUE(reachable({2.6, 2.0, 1.0}));          // 0.40 m: not nearer
+  EXPECT_TRUE(reachable({2.64, 2.0, 1.0}));         // of the same voxel
+  EXPECT_FALSE(reachable({2.7, 2.0, 1.0}));
+  EXPECT_FALSE(reachable({3.0, 2.0, 1.0}));  // in the wall
+  EXPECT_FALSE(reachable({3.5, 2.0, 1.0}));  // behind it
+}
+
+TEST_F(EmptyHall, ACornerIsMeasuredAlongTheDiagonal) {
+  map.set_label({30, 30, 10}, Label::Occupied);
+  EXPECT_FALSE(reachable({2.8, 2.7, 1.0}));  // 2, 3 voxels: sqrt 13 < 4
+  EXPECT_TRUE(reachable({2.7, 2.7, 1.0}));   // 3, 3 voxels: sqrt 18 > 4
+}
+
+TEST_F(EmptyHall, ThePathKeepsTheClearanceToo) {
+  map.set_label({20, 23, 10}, Label::Occupied);  // 0.3 m beside the way
+  EXPECT_FALSE(reachable({3.0, 2.0, 1.0}));
+  EXPECT_TRUE(reachable({3.0, 1.7, 1.0}));
+}
+
+TEST_F(EmptyHall, ThePathMustBeKnownEmpty) {
+  for (const Label unknown : {Label::Unmarked, Label::Occluded, Label::OcclusionPlane}) {
+    parameters.body_radius_m = 0.0;
+    map.set_label({25, 20, 10}, unknown);
+    EXPECT_FALSE(reachable({3.0, 2.0, 1.0}));
+    EXPECT_FALSE(reachable({2.5, 2.0, 1.0}));
+    EXPECT_TRUE(reachable({2.4, 2.0, 1.0}));
+    EXPECT_TRUE(reachable({3.0, 2.0, 1.2}));
+  }
+}
+
+TEST_F(EmptyHall, NothingUnknownMayBeWithinTheBody) {
+  map.set_label({25, 21, 10}, Label::Unmarked);  // 0.1 m beside the way
+  EXPECT_FALSE(reachable({3.0, 2.0, 1.0}));
+  parameters.body_radius_m = 0.1;
+  EXPECT_TRUE(reachable({3.0, 2.0, 1.0}));
+}
+
+TEST_F(EmptyHall, UnknownSpaceWhereTheRobotStandsDoesNotHoldIt) {
+  fill({0, 21, 0}, {17, 40, 20}, Label::Unmarked);  // beside the way for 0.7 m
+  EXPECT_TRUE(reachable({3.0, 2.0, 1.0}));
+  parameters.departure_m = 0.4;
+  EXPECT_FALSE(reachable({3.0, 2.0, 1.0}));
+}
+
+TEST_F(EmptyHall, TheWindowEndsTheKnownSpace) {
+  EXPECT_TRUE(reachable({3.7, 2.0, 1.0}));  // voxel 37 of 0..39, the body's 2 inside
+  EXPECT_FALSE(reachable({3.9, 2.0, 1.0}));
+  EXPECT_FALSE(reachable({4.2, 2.0, 1.0}));
+}
+
+TEST_F(EmptyHall, WorkspaceAndLiftLimitThePosition) {
+  parameters.workspace_min_m = {0.5, 0.5, 0.5};
+  parameters.workspace_max_m = {3.0, 3.0, 1.5};
+  parameters.lift_min_m = 0.8;
+  parameters.lift_max_m = 1.2;
+  EXPECT_TRUE(reachable({3.0, 3.0, 1.2}));
+  EXPECT_FALSE(reachable({3.01, 2.0, 1.0}));
+  EXPECT_FALSE(reachable({0.49, 2.0, 1.0}));
+  EXPECT_FALSE(reachable({2.0, 2.0, 1.21}));
+  EXPECT_FALSE(reachable({2.0, 2.0, 0.79}));
+}
+
+TEST_F(EmptyHall, APositionThatTurnedOutTooNearCanBeLeftButNotMadeWorse) {
+  map.set_label({10, 23, 10}, Label::Occupied);  // 0.3 m from where the sensor stands
+  EXPECT_TRUE(reachable(present_m));
+  EXPECT_TRUE(reachable({1.0, 1.5, 1.0}));
+  EXPECT_TRUE(reachable({2.0, 2.0, 1.0}));
+  EXPECT_FALSE(reachable({1.0, 2.1, 1.0}));
+  map.set_label({20, 23, 10}, Label::Occupied);  // once clear, it must stay clear
+  EXPECT_FALSE(reachable({3.0, 2.0, 1.0}));
+}
+
+TEST_F(EmptyHall, RefusedGoalsAndWhatLiesBehindThemAreLeftOut) {
+  refused.push_back({{2.5, 2.0, 1.0}, 0.0, 0.0});
+  EXPECT_FALSE(reachable({2.5, 2.0, 1.0}));
+  EXPECT_FALSE(reachable({2.6, 2.2, 1.0}));
+  EXPECT_FALSE(reachable({3.5, 2.0, 1.0}));
+  EXPECT_TRUE(reachable({2.0, 2.0, 1.0}));
+  EXPECT_TRUE(reachable({2.5, 3.0, 1.0}));
+  EXPECT_TRUE(reachable(present_m));
+}
+
+TEST_F(EmptyHall, ParametersThatCannotBeAreNamed) {
+  parameters.clearance_m = -0.1;
+  EXPECT_THROW(reachable(present_m), std::invalid_argument);
+  parameters = {};
+  parameters.workspace_max_m = parameters.workspace_min_m;
+  EXPECT_THROW(reachable(present_m), std::invalid_argument);
+  parameters = {};
+  present_m = {9.0, 2.0, 1.0};
+  EXPECT_THROW(reachable({1.0, 1.0, 1.0}), std::invalid_argument);
+}
+
+TEST(VoxelsAlong, PassesThroughFaces) {
+  const VoxelGrid grid{1.0, Vector3d::Zero()};
+  const std::vector<VoxelIndex> expected = {{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {2, 1, 0}};
+  EXPECT_EQ(voxels_along(grid, {0.0, 0.0, 0.0}, {2.0, 1.2, 0.0}), expected);
+  EXPECT_EQ(voxels_along(grid, {0.1, 0.0, 0.0}, {-0.2, 0.0, 0.3}).size(), 1u);
+}
+
+// Every voxel that points sampled densely on a segment fall in must be in the list.
+TEST(VoxelsAlong, LeavesOutNoVoxelTheSegmentPassesThrough) {
+  const VoxelGrid grid{0.1, Vector3d(0.03, -0.02, 0.01)};
+  RandomStream random(1, 1, 1, RandomPurpose::InitialSimplex);
+  const auto point = [&random]() -> Vector3d {
+    return (Vector3d(random.uniform(), random.uniform(), random.uniform()) -
+            Vector3d::Constant(0.5)) *
+           4.0;
+  };
+  int segments = 0;
+  for (; segments < 2000; ++segments) {
+    const Vector3d from = point();
+    Vector3d to = point();
+    if (segments % 4 == 0) to[segments % 3] = from[segments % 3];  // along a plane of the axes
+    const auto voxels = voxels_along(grid, from, to);
+    ASSERT_EQ(voxels.front(), grid.voxel_of(from));
+    ASSERT_EQ(voxels.back(), grid.voxel_of(to));
+    for (std::size_t i = 1; i < voxels.size(); ++i) {
+      ASSERT_EQ((voxels[i] - voxels[i - 1]).cwiseAbs().sum(), 1);
+    }
+    std::size_t at = 0;
+    for (int sample = 0; sample <= 400; ++sample) {
+      const VoxelIndex voxel = grid.voxel_of(from + (sample / 400.0) * (to - from));
+      while (at < voxels.size() && voxels[at] != voxel) ++at;
+      ASSERT_LT(at, voxels.size());
+    }
+  }
+  EXPECT_EQ(segments, 2000);
+}
+
+}  // namespace
+}  // namespace nextview

@@ -1,0 +1,168 @@
+#include "planner/next_view.h"
+
+#include <gtest/gtest.h>
+
+#include <stdexcept>
+
+namespace nextview {
+namespace {
+
+using Eigen::Vector3d;
+
+// A hall of 3.8 x 3.8 x 1.8 m: Empty inside walls, of which one has not been seen.
+class Hall : public ::testing::Test {
+ protected:
+  Hall()
+      : map({0.1, Vector3d::Zero()}, {VoxelIndex::Zero(), VoxelIndex(40, 40, 20)}),
+        predictor(prediction_raster(TiltedLineScan::with_aperture(8, 4, 1.0), {}), 0.1,
+                  icosahedron_orientations(), false) {
+    for (int k = 0; k < 20; ++k) {
+      for (int j = 0; j < 40; ++j) {
+        for (int i = 0; i < 40; ++i) {
+          const bool wall = k == 0 || k == 19 || j == 0 || i == 0 || i == 39;
+          const Label label = wall ? Label::Occupied : j == 39 ? Label::Unmarked : Label::Empty;
+          map.set_label({i, j, k}, label);
+        }
+      }
+    }
+  }
+
+  Decision decide(std::int64_t seed, int attempt = 1) {
+    const auto decision =
+        decide_next_view(map, predictor, parameters, present, seed, 2, attempt, refused);
+    EXPECT_TRUE(decision.has_value());
+    return decision.value_or(Decision{});
+  }
+
+  VoxelMap map;
+  PlainViewPredictor predictor;
+  PlannerParameters parameters;
+  SensorPose present{{0.8, 0.8, 0.7}, 0.0, 0.0};
+  std::vector<SensorPose> refused;
+};
+
+bool same(const Decision& a, const Decision& b) {
+  if (a.tried.size() != b.tried.size()) return false;
+  for (std::size_t i = 0; i < a.tried.size(); ++i) {
+    if (a.tried[i].position_m != b.tried[i].position_m) return false;
+    if (a.tried[i].fitness != b.tried[i].fitness) return false;
+  }
+  return a.pose.position_m == b.pose.position_m && a.pose.pan_rad == b.pose.pan_rad &&
+         a.pose.tilt_rad == b.pose.tilt_rad && a.fitness.value == b.fitness.value;
+}
+
+TEST_F(Hall, TheSameArgumentsGiveTheSameView) {
+  for (int seed = 1; seed <= 10; ++seed) EXPECT_TRUE(same(decide(seed), decide(seed)));
+}
+
+TEST_F(Hall, AnotherSeedOrAttemptSearchesElsewhere) {
+  EXPECT_FALSE(same(decide(1), decide(2)));
+  EXPECT_FALSE(same(decide(1, 1), decide(1, 2)));
+}
+
+TEST_F(Hall, TheViewIsTheBestOfAllTried) {
+  for (int seed = 1; seed <= 10; ++seed) {
+    const Decision decision = decide(seed);
+    EXPECT_EQ(decision.evaluations, static_cast<int>(decision.tried.size()));
+    EXPECT_EQ(decision.tried[0].position_m, present.position_m);
+    EXPECT_EQ(decision.tried[0].move, SimplexMove::FirstVertex);
+    for (const TriedPosition& tried : decision.tried) {
+      EXPECT_LE(tried.fitness, decision.fitness.value);
+    }
+    EXPECT_EQ(decision.waypoints_m.front(), present.position_m);
+    EXPECT_EQ(decision.waypoints_m.back(), decision.pose.position_m);
+  }
+}
+
+TEST_F(Hall, TheFitnessIsWhatThePredictorSaysOfTheView) {
+  const Decision decision = decide(3);
+  std::vector<ViewCounts> counts(20);
+  predictor.predict(map, map.grid().voxel_of(decision.pose.position_m), counts);
+  double best = 0.0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    best = std::max(best, fitness(counts[i], false).value);
+  }
+  EXPECT_EQ(decision.fitness.value, best);
+  // Only a view that has the unseen wall in sight is better than one of nothing new.
+  EXPECT_GT(decision.fitness.value, 0.5);
+  EXPECT_GT(decision.fitness.share_unseen, 0.0);
+}
+
+TEST_F(Hall, LimitsAreKept) {
+  parameters.feasibility.lift_min_m = 0.5;
+  parameters.feasibility.lift_max_m = 1.1;
+  parameters.feasibility.workspace_min_m = {0.5, 0.5, 0.0};
+  parameters.feasibility.workspace_max_m = {1.5, 2.0, 2.0};
+  int moved = 0;
+  for (int seed = 1; seed <= 20; ++seed) {
+    const Vector3d position_m = decide(seed).pose.position_m;
+    EXPECT_GE(position_m.z(), 0.5);
+    EXPECT_LE(position_m.z(), 1.1);
+    EXPECT_GE(position_m.x(), 0.5);
+    EXPECT_LE(position_m.x(), 1.5);
+    EXPECT_LE(position_m.y(), 2.0);
+    if (position_m != present.position_m) ++moved;
+  }
+  EXPECT_GT(moved, 0);
+}
+
+TEST_F(Hall, RefusedGoalsAreAvoided) {
+  int compared = 0;
+  for (int seed = 1; seed <= 10; ++seed) {
+    refused.clear();
+    const SensorPose first = decide(seed).pose;
+    if (first.position_m == present.position_m) continue;
+    refused.push_back(first);
+    const Vector3d second_m = decide(seed).pose.position_m;
+    const double away_m = (first.position_m - present.position_m).norm();
+    EXPECT_GT((second_m - first.position_m).norm(),
+              std::min(parameters.feasibility.clearance_m, 0.5 * away_m));
+    ++compared;
+  }
+  EXPECT_GT(compared, 3);
+}
+
+// Boxed in, the robot can only turn, and the direction it has just looked in is not taken again
+// although it is the best there is.
+TEST_F(Hall, TheScanJustTakenIsNotRepeated) {
+  parameters.feasibility.workspace_min_m = present.position_m - Vector3d::Constant(1e-3);
+  parameters.feasibility.workspace_max_m = present.position_m + Vector3d::Constant(1e-3);
+  const SensorPose best = decide(1).pose;
+  present.pan_rad = best.pan_rad;
+  present.tilt_rad = best.tilt_rad;
+  const SensorPose next = decide(1).pose;
+  EXPECT_TRUE(next.pan_rad != best.pan_rad || next.tilt_rad != best.tilt_rad);
+}
+
+TEST_F(Hall, NothingFeasibleIsNoDecision) {
+  refused.push_back(present);
+  parameters.feasibility.workspace_max_m = {0.9, 0.9, 0.8};
+  parameters.feasibility.workspace_min_m = {0.85, 0.85, 0.75};
+  EXPECT_EQ(decide_next_view(map, predictor, parameters, present, 1, 2, 1, refused), std::nullopt);
+}
+
+TEST_F(Hall, ParametersThatCannotBeAreNamed) {
+  const auto message = [&](auto change) {
+    PlannerParameters changed;
+    change(changed);
+    try {
+      decide_next_view(map, predictor, changed, present, 1, 2, 1, {});
+    } catch (const std::invalid_argument& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  using P = PlannerParameters;
+  EXPECT_EQ(message([](P&) {}), "accepted");
+  EXPECT_EQ(message([](P& p) { p.step_min_m = 0.0; }), "step_min_m must be a positive length");
+  EXPECT_EQ(message([](P& p) { p.step_max_m = 0.1; }), "step_max_m must be at least step_min_m");
+  EXPECT_EQ(message([](P& p) { p.fitness_tolerance = -1.0; }),
+            "fitness_tolerance must be 0 or more");
+  EXPECT_EQ(message([](P& p) { p.max_evaluations = 3; }), "max_evaluations must be at least 4");
+  EXPECT_EQ(message([](P& p) { p.feasibility.clearance_m = -1.0; }),
+            "clearance_m must be a length from 0 to 5 m");
+  EXPECT_NE(message([](P& p) { p.use_quality = true; }), "accepted");
+}
+
+}  // namespace
+}  // namespace nextview
