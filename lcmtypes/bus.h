@@ -28,7 +28,7 @@ class RejectedMessage : public std::runtime_error {
 
 /// What the bus has seen since the start.
 struct BusCounters {
-  std::int64_t delivered = 0;   ///< messages given to handlers
+  std::int64_t delivered = 0;   ///< to handlers; requests and status messages not counted
   std::int64_t strangers = 0;   ///< messages of other runs, ignored
   std::int64_t duplicates = 0;  ///< messages seen before, ignored
   std::int64_t dropped = 0;     ///< messages that cannot be right
@@ -131,7 +131,7 @@ void Bus::deliver(std::span<const std::uint8_t> bytes,
   }
   try {
     handler(*decoded.message);
-    ++counters_.delivered;
+    if (Channel<Message>::answered) ++counters_.delivered;
   } catch (const RejectedMessage& rejected) {
     seen_[std::string(channel)].erase(key);  // the right one may still come
     drop(channel, rejected.what());

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cmath>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace nextview {
+
+/// Collects what is wrong with a message; the first reason found stands.
+class Checks {
+ public:
+  void require(bool holds, std::string_view reason) {
+    if (!holds && reason_.empty()) reason_ = reason;
+  }
+  void finite(std::string_view name, double value) {
+    if (!std::isfinite(value)) fail(name, value, "not finite");
+  }
+  void finite(std::string_view name, std::span<const double> values) {
+    for (const double value : values) finite(name, value);
+  }
+  /// Bounds included; NaN is outside.
+  void within(std::string_view name, double value, double least, double most) {
+    if (!(value >= least && value <= most)) fail(name, value, "out of range");
+  }
+  void not_negative(std::string_view name, double value) {
+    if (!(value >= 0.0 && std::isfinite(value))) fail(name, value, "negative or not finite");
+  }
+  void positive(std::string_view name, double value) {
+    if (!(value > 0.0 && std::isfinite(value))) fail(name, value, "not positive");
+  }
+  void digest(std::string_view name, std::string_view text) {
+    const bool right =
+        text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
+    require(right, std::string(name) + " is not 32 hexadecimal digits");
+  }
+  std::string reason() const { return reason_; }
+
+ private:
+  void fail(std::string_view name, double value, std::string_view fault) {
+    require(false, std::string(name) + " = " + std::to_string(value) + ": " + std::string(fault));
+  }
+  std::string reason_;
+};
+
+}  // namespace nextview
