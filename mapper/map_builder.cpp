@@ -1,0 +1,124 @@
+#include "mapper/map_builder.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include "mapper/image_check.h"
+#include "mapper/map_blocks.h"
+#include "mapper/map_census.h"
+#include "mapper/map_digest.h"
+#include "mapper/quality_census.h"
+#include "mapper/ray_ends.h"
+#include "mapper/ray_marking.h"
+
+namespace nextview {
+
+struct MapBuilder::State {
+  State(const VoxelGrid& grid, const MapWindow& window)
+      : map(grid, window), blocks(map), census(map, blocks), digest(blocks) {}
+
+  void update_surfaces();
+  void box_changes(std::span<const std::uint32_t> changed_blocks);
+
+  VoxelMap map;
+  MapBlocks blocks;
+  MapCensus census;
+  QualityCensus quality;
+  MapDigest digest;
+  RayEnds ray_ends;
+  FoldReport report;
+};
+
+MapBuilder::MapBuilder(const VoxelGrid& grid, const MapWindow& window)
+    : state_(std::make_unique<State>(grid, window)) {}
+MapBuilder::~MapBuilder() = default;
+MapBuilder::MapBuilder(MapBuilder&&) noexcept = default;
+MapBuilder& MapBuilder::operator=(MapBuilder&&) noexcept = default;
+
+const FoldReport& MapBuilder::fold(const RangeImage& image) {
+  State& s = *state_;
+  check_range_image(image, s.map.grid(), s.map.window());
+  s.report.changed_slots.clear();
+
+  s.ray_ends.collect(image, s.map.grid(), s.map.window());  // eq. 1, eq. 2, normals (P9)
+  const VoxelIndex sensor = s.map.grid().voxel_of(image.position_m);
+  s.report.newly_occupied =
+      mark_rays(s.map, sensor, s.ray_ends.ends(), s.report.changed_slots);  // P12
+  s.update_surfaces();                                                      // P9
+  s.census.note_changes(s.blocks, s.report.changed_slots);
+  const auto changed_blocks =
+      s.census.update(s.map, s.blocks, s.report.changed_slots);  // OcclusionPlane, P13
+  for (const std::uint32_t block : changed_blocks) s.digest.invalidate(block);
+  s.box_changes(changed_blocks);
+
+  const PixelCounts& pixels = s.ray_ends.counts();
+  s.report.points = pixels.points;
+  s.report.points_outside = pixels.points_outside;
+  s.report.no_returns = pixels.no_returns;
+  s.report.invalid = pixels.invalid;
+  return s.report;
+}
+
+void MapBuilder::State::update_surfaces() {
+  for (const RayEnd& end : ray_ends.ends()) {
+    if (!end.is_surface) continue;
+    SurfaceVoxel& voxel = map.surface_at(end.voxel);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      voxel.normal_sum[axis] += end.seen.normal_sum[axis];
+    }
+    voxel.normal_count += end.seen.normal_count;
+    if (end.seen.quality > voxel.quality) {
+      quality.change(voxel.quality, end.seen.quality);
+      voxel.quality = end.seen.quality;
+    }
+    digest.invalidate(blocks.block_of(map.slot(end.voxel)));
+  }
+}
+
+void MapBuilder::State::box_changes(std::span<const std::uint32_t> changed_blocks) {
+  MapWindow& box = report.changed_box;
+  box = {VoxelIndex::Zero(), VoxelIndex::Zero()};
+  if (report.changed_slots.empty()) return;
+  VoxelIndex min = blocks.coordinate(changed_blocks.front());
+  VoxelIndex max = min;
+  for (const std::uint32_t block : changed_blocks) {
+    min = min.cwiseMin(blocks.coordinate(block));
+    max = max.cwiseMax(blocks.coordinate(block));
+  }
+  const MapWindow& window = map.window();
+  box.min = (MapBlocks::kSide * min).cwiseMax(window.min);
+  const VoxelIndex end =
+      (MapBlocks::kSide * (max + VoxelIndex::Ones())).cwiseMin(window.min + window.size);
+  box.size = end - box.min;
+}
+
+const VoxelMap& MapBuilder::map() const { return state_->map; }
+
+MapStatistics MapBuilder::statistics() const {
+  const State& s = *state_;
+  MapStatistics statistics;
+  for (std::size_t label = 0; label < kLabelCount; ++label) {
+    statistics.voxels[label] = s.census.voxels(static_cast<Label>(label));
+  }
+  statistics.occupied_faces = s.census.occupied_faces();
+  statistics.occlusion_plane_faces = s.census.occlusion_plane_faces();
+  const double face_m2 = s.map.grid().voxel_size_m * s.map.grid().voxel_size_m;
+  statistics.occupied_area_m2 = static_cast<double>(statistics.occupied_faces) * face_m2;
+  statistics.occlusion_plane_area_m2 =
+      static_cast<double>(statistics.occlusion_plane_faces) * face_m2;
+  const std::int64_t occupied = s.census.voxels(Label::Occupied);
+  statistics.mean_quality = s.quality.mean(occupied);
+  statistics.min_quality = s.quality.min(occupied);
+  return statistics;
+}
+
+std::string MapBuilder::digest() { return state_->digest.digest(state_->map, state_->blocks); }
+
+std::size_t MapBuilder::memory_bytes() const {
+  const State& s = *state_;
+  return sizeof(State) + s.map.memory_bytes() + s.blocks.memory_bytes() + s.census.memory_bytes() +
+         s.quality.memory_bytes() + s.digest.memory_bytes() + s.ray_ends.memory_bytes() +
+         s.report.changed_slots.capacity() * sizeof(std::uint32_t);
+}
+
+}  // namespace nextview

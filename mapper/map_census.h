@@ -1,0 +1,66 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mapper/map_blocks.h"
+#include "mapper/voxel_map.h"
+
+namespace nextview {
+
+/// What the marking of a range image (ray_marking.h) leaves where a voxel went from Unmarked to
+/// Occluded, until MapCensus has made it Occluded or OcclusionPlane. No map shows it after a fold.
+constexpr Label kFreshlyOccluded = static_cast<Label>(kLabelCount);
+
+/// The voxels of a map counted block by block, and its occlusion planes (P8, P13).
+///
+/// A label, and whether an Occluded voxel is an OcclusionPlane, depends on the voxel and its six
+/// neighbours only. So after a range image the blocks it changed, and those next to a changed voxel
+/// at their side, are looked at again as a whole, and the totals take the difference.
+class MapCensus {
+ public:
+  /// Of a map that is all Unmarked.
+  MapCensus(const VoxelMap& map, const MapBlocks& blocks);
+
+  /// Takes note that these slots' labels have changed.
+  void note_changes(const MapBlocks& blocks, std::span<const std::uint32_t> slots);
+
+  /// Derives the occlusion planes around what has changed and counts again. Voxels that turned from
+  /// Occluded to OcclusionPlane or back without having been noted are added to changed_slots.
+  /// @return the blocks looked at, which are the only ones whose labels may have changed since the
+  ///         last call; valid until the next one
+  std::span<const std::uint32_t> update(VoxelMap& map, const MapBlocks& blocks,
+                                        std::vector<std::uint32_t>& changed_slots);
+
+  std::int64_t voxels(Label label) const { return voxels_[static_cast<std::size_t>(label)]; }
+  /// Faces of Occupied voxels that touch an Empty voxel of the window.
+  std::int64_t occupied_faces() const { return occupied_faces_; }
+  /// Faces of OcclusionPlane voxels that touch an Empty voxel of the window.
+  std::int64_t occlusion_plane_faces() const { return occlusion_plane_faces_; }
+
+  std::size_t memory_bytes() const;
+
+ private:
+  struct Counts {
+    std::array<std::uint16_t, kLabelCount> voxels = {};  ///< Unmarked ones are not counted
+    std::uint16_t occupied_faces = 0;
+    std::uint16_t occlusion_plane_faces = 0;
+  };
+
+  void look_at_neighbours(const MapBlocks& blocks);
+  static Counts recount(VoxelMap& map, const MapBlocks& blocks, std::uint32_t block,
+                        std::vector<std::uint32_t>& changed_slots);
+  void add(const Counts& counts, int sign);
+
+  std::vector<Counts> counts_;          ///< by block
+  std::vector<std::uint8_t> touched_;   ///< by block: sides touched (MapBlocks::place), kListed
+  std::vector<std::uint32_t> to_look_;  ///< the blocks with kListed
+  std::vector<std::uint32_t> looked_;
+  std::array<std::int64_t, kLabelCount> voxels_ = {};
+  std::int64_t occupied_faces_ = 0;
+  std::int64_t occlusion_plane_faces_ = 0;
+};
+
+}  // namespace nextview

@@ -1,0 +1,134 @@
+#include "mapper/map_digest.h"
+
+#include <xxhash.h>
+
+#include <memory>
+#include <new>
+#include <type_traits>
+
+namespace nextview {
+
+namespace {
+
+constexpr std::size_t kSurfaceBytes = 3 * 8 + 4 + 2;
+constexpr std::size_t kMaxBlockBytes = 3 * 4 + MapBlocks::kVoxels * (1 + kSurfaceBytes);
+
+// The bytes of one block, in a buffer on the stack.
+class BlockBytes {
+ public:
+  template <typename Integer>
+  void put(Integer value) {
+    const auto bits = static_cast<std::make_unsigned_t<Integer>>(value);
+    for (std::size_t byte = 0; byte < sizeof(Integer); ++byte) {
+      bytes_[size_++] = static_cast<unsigned char>(bits >> (8 * byte));
+    }
+  }
+  const unsigned char* begin() const { return bytes_; }
+  std::size_t size() const { return size_; }
+
+ private:
+  unsigned char bytes_[kMaxBlockBytes];
+  std::size_t size_ = 0;
+};
+
+void put_surface(const SurfaceVoxel* surface, BlockBytes& bytes) {
+  static constexpr SurfaceVoxel kNothing;
+  const SurfaceVoxel& voxel = surface == nullptr ? kNothing : *surface;
+  for (const std::int64_t sum : voxel.normal_sum) bytes.put(sum);
+  bytes.put(voxel.normal_count);
+  bytes.put(voxel.quality);
+}
+
+// Writes a block's content; false when all of it is Unmarked.
+bool serialise(const VoxelMap& map, const MapBlocks& blocks, std::uint32_t block,
+               BlockBytes& bytes) {
+  constexpr std::size_t kSide = MapBlocks::kSide;
+  const VoxelIndex coordinate = blocks.coordinate(block);
+  for (int axis = 0; axis < 3; ++axis) bytes.put(static_cast<std::int32_t>(coordinate[axis]));
+
+  const auto slots = blocks.slots_around(block);
+  const std::span<const Label> labels = map.labels();
+  std::uint16_t occupied[MapBlocks::kVoxels];
+  std::size_t occupied_count = 0;
+  bool any_marked = false;
+  for (std::size_t v = 0; v < MapBlocks::kVoxels; ++v) {
+    const std::size_t x = slots[0][1 + v % kSide];
+    const std::size_t y = slots[1][1 + v / kSide % kSide];
+    const std::size_t z = slots[2][1 + v / (kSide * kSide)];
+    const bool inside =
+        x != MapBlocks::kOutside && y != MapBlocks::kOutside && z != MapBlocks::kOutside;
+    const Label label = inside ? labels[x + y + z] : Label::Unmarked;
+    bytes.put(static_cast<std::uint8_t>(label));
+    any_marked |= label != Label::Unmarked;
+    if (label == Label::Occupied) occupied[occupied_count++] = static_cast<std::uint16_t>(v);
+  }
+  for (std::size_t n = 0; n < occupied_count; ++n) {
+    const int v = occupied[n];
+    const VoxelIndex offset(v % 8, v / 8 % 8, v / 64);
+    put_surface(map.surface(MapBlocks::kSide * coordinate + offset), bytes);
+  }
+  return any_marked;
+}
+
+using Hash = std::array<unsigned char, 16>;
+
+Hash canonical(const XXH128_hash_t& hash) {
+  XXH128_canonical_t bytes;
+  XXH128_canonicalFromHash(&bytes, hash);
+  return std::to_array(bytes.digest);
+}
+
+std::string hex(const Hash& hash) {
+  static constexpr char kDigits[] = "0123456789abcdef";
+  std::string text;
+  for (const unsigned char byte : hash) {
+    text += kDigits[byte >> 4];
+    text += kDigits[byte & 15];
+  }
+  return text;
+}
+
+struct FreeState {
+  void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
+};
+
+}  // namespace
+
+MapDigest::MapDigest(const MapBlocks& blocks)
+    : hashes_(blocks.size()), present_(blocks.size(), 0), stale_(blocks.size(), 0) {}
+
+std::string MapDigest::digest(const VoxelMap& map, const MapBlocks& blocks) {
+  for (const std::uint32_t block : to_hash_) {
+    BlockBytes bytes;
+    present_[block] = serialise(map, blocks, block, bytes) ? 1 : 0;
+    if (present_[block]) {
+      hashes_[block] = canonical(XXH3_128bits(bytes.begin(), bytes.size()));
+    }
+    stale_[block] = 0;
+  }
+  to_hash_.clear();
+
+  const std::unique_ptr<XXH3_state_t, FreeState> state(XXH3_createState());
+  if (state == nullptr) throw std::bad_alloc();
+  XXH3_128bits_reset(state.get());
+  for (std::size_t block = 0; block < present_.size(); ++block) {
+    if (present_[block]) {
+      XXH3_128bits_update(state.get(), hashes_[block].data(), sizeof(Hash));
+    }
+  }
+  return hex(canonical(XXH3_128bits_digest(state.get())));
+}
+
+std::size_t MapDigest::memory_bytes() const {
+  return hashes_.capacity() * sizeof(Hash) + present_.capacity() + stale_.capacity() +
+         to_hash_.capacity() * sizeof(to_hash_[0]);
+}
+
+std::string map_digest(const VoxelMap& map) {
+  const MapBlocks blocks(map);
+  MapDigest digest(blocks);
+  for (std::uint32_t block = 0; block < blocks.size(); ++block) digest.invalidate(block);
+  return digest.digest(map, blocks);
+}
+
+}  // namespace nextview

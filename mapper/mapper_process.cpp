@@ -1,0 +1,93 @@
+#include "mapper/mapper_process.h"
+
+#include <utility>
+
+#include "mapper/mapper_config.h"
+
+namespace nextview {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+std::int64_t count(const MapStatistics& statistics, Label label) {
+  return statistics.voxels[static_cast<std::size_t>(label)];
+}
+
+}  // namespace
+
+MapperProcess::MapperProcess(Bus& bus, const run_config_t& config)
+    : bus_(bus), config_(config), builder_(grid_of(config), window_of(config)) {
+  bus_.on<range_image_t>([this](const range_image_t& part) { receive(part); });
+}
+
+void MapperProcess::receive(const range_image_t& part) {
+  check_fits_run(part, config_);
+  if (part.view < next_view_) return;
+  if (auto image = assembler_.add(part)) waiting_.emplace(part.view, std::move(*image));
+}
+
+bool MapperProcess::step() {
+  const auto next = waiting_.find(next_view_);
+  if (next == waiting_.end()) return false;
+  const ReceivedRangeImage received = std::move(next->second);
+  waiting_.erase(next);
+
+  const auto start = Clock::now();
+  const FoldReport& report = builder_.fold(received.image);
+  const double update_wall_s = seconds_since(start);
+  commit_t commit = commit_message(received, report);
+  commit.update_wall_s = update_wall_s;
+  bus_.publish(commit);
+  ++next_view_;
+  return true;
+}
+
+commit_t MapperProcess::commit_message(const ReceivedRangeImage& received,
+                                       const FoldReport& report) {
+  commit_t commit{};
+  commit.utime = received.utime;
+  commit.view = received.view;
+  commit.attempt = received.attempt;
+  for (int axis = 0; axis < 3; ++axis) {
+    commit.used_position_m[axis] = received.image.position_m[axis];
+  }
+  commit.pan_rad = received.image.pose.pan_rad;
+  commit.tilt_rad = received.image.pose.tilt_rad;
+
+  const MapStatistics statistics = builder_.statistics();
+  commit.unmarked_voxels = count(statistics, Label::Unmarked);
+  commit.occluded_voxels = count(statistics, Label::Occluded);
+  commit.occlusion_plane_voxels = count(statistics, Label::OcclusionPlane);
+  commit.empty_voxels = count(statistics, Label::Empty);
+  commit.occupied_voxels = count(statistics, Label::Occupied);
+  commit.newly_occupied_voxels = report.newly_occupied;
+  commit.occupied_area_m2 = statistics.occupied_area_m2;
+  commit.occlusion_plane_area_m2 = statistics.occlusion_plane_area_m2;
+  commit.mean_quality = statistics.mean_quality;
+  commit.min_quality = statistics.min_quality;
+  commit.points = report.points;
+  commit.points_outside = report.points_outside;
+  commit.no_returns = report.no_returns;
+  commit.invalid = report.invalid;
+
+  const auto start = Clock::now();
+  commit.map_digest = builder_.digest();
+  commit.digest_wall_s = seconds_since(start);
+  return commit;
+}
+
+void MapperProcess::ask_again() {
+  if (!waiting_.empty()) bus_.request<range_image_t>(next_view_, 0);
+}
+
+void MapperProcess::on_missing(const request_t& request) {
+  if (request.wanted_channel == Channel<commit_t>::name) {
+    bus_.request<range_image_t>(request.view, request.attempt);
+  }
+}
+
+}  // namespace nextview

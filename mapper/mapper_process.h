@@ -1,0 +1,35 @@
+#pragma once
+
+#include <map>
+
+#include "lcmtypes/bus_process.h"
+#include "mapper/map_builder.h"
+#include "sensor_sim/range_image_message.h"
+
+namespace nextview {
+
+/// The mapper on the bus: folds every view's range image into the map, in view order, and says with
+/// a commit what the map is then.
+class MapperProcess : public BusProcess {
+ public:
+  MapperProcess(Bus& bus, const run_config_t& config);
+
+  /// Folds the range image of the next view.
+  bool step() override;
+  /// Asks for the view that later ones, already here, wait for.
+  void ask_again() override;
+  void on_missing(const request_t& request) override;
+
+ private:
+  void receive(const range_image_t& part);
+  commit_t commit_message(const ReceivedRangeImage& received, const FoldReport& report);
+
+  Bus& bus_;
+  run_config_t config_;
+  MapBuilder builder_;
+  RangeImageAssembler assembler_;
+  std::map<int, ReceivedRangeImage> waiting_;  // by view; the first attempt that came whole counts
+  int next_view_ = 1;
+};
+
+}  // namespace nextview

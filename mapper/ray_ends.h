@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mapper/normals.h"
+#include "mapper/voxel_map.h"
+#include "sensor_sim/range_image.h"
+
+namespace nextview {
+
+/// No point is sought farther away than this many voxels, nor a range without return believed: it
+/// is far outside any window, and a voxel line can still be drawn towards it.
+constexpr double kFarthestVoxels = 16384.0;
+
+/// A voxel in which rays of a range image end. Rays from the same sensor to the same voxel are the
+/// same voxel line, so one entry stands for all of them.
+struct RayEnd {
+  VoxelIndex voxel;
+  bool is_surface;    ///< points were sensed in it; otherwise the line up to it is merely free
+  SurfaceVoxel seen;  ///< of the points sensed in it by this image: normal sums, best quality
+};
+
+/// How the pixels of a range image divide.
+struct PixelCounts {
+  std::int64_t points = 0;          ///< a point inside the window
+  std::int64_t points_outside = 0;  ///< a point outside: the line towards it is free in the window
+  std::int64_t no_returns = 0;      ///< +inf: the line is free up to the largest range
+  std::int64_t invalid = 0;         ///< NaN: says nothing
+};
+
+/// Collects where the rays of an image end: eq. 1 and 2 for every pixel, its normal and quality.
+/// One object serves many images, to reuse its memory.
+class RayEnds {
+ public:
+  /// The image must be valid and its sensor inside the window (MapBuilder::fold checks both).
+  void collect(const RangeImage& image, const VoxelGrid& grid, const MapWindow& window);
+
+  /// The distinct ends, in the order of the first pixel that has each.
+  std::span<const RayEnd> ends() const { return ends_; }
+  const PixelCounts& counts() const { return counts_; }
+  std::size_t memory_bytes() const;
+
+ private:
+  void add_points(int begin, int end, SurfaceVoxel& seen) const;
+  RayEnd& end_of(std::uint64_t key);
+  void grow_table();
+  void clear_table();
+
+  struct TableEntry {
+    std::uint64_t key;
+    std::uint32_t end;
+  };
+
+  VoxelIndex sensor_;
+  NormalEstimator normals_;
+  NormalRow normal_row_;
+  std::vector<std::uint64_t> key_row_;
+  std::vector<RayEnd> ends_;
+  std::vector<TableEntry> table_;    ///< open addressing by key; its size is a power of two
+  std::vector<std::uint32_t> used_;  ///< places of the table in use
+  PixelCounts counts_;
+};
+
+}  // namespace nextview

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mapper/ray_ends.h"
+#include "mapper/voxel_map.h"
+
+namespace nextview {
+
+/// Marks the voxels that the rays of one range image pass and hit (P11, P12), along the voxel line
+/// from the sensor to each end:
+///
+///     sensor . . . . . . [end] # # # # #|  limit of the window
+///       Empty          Occupied  Occluded
+///
+/// An end that is no surface is marked Empty like the voxels before it, and nothing beyond it.
+/// A mark raises a label to the larger of the two and never lowers it (see Label), so no order of
+/// the rays matters. Marks are set strongest first, all hits, then all misses, then all shadows:
+/// then no voxel changes twice.
+///
+/// A voxel that turns from Unmarked to Occluded is left as kFreshlyOccluded (map_census.h).
+///
+/// @param sensor        the voxel of the sensor, inside the map's window
+/// @param changed_slots receives, appended, the slots whose label has changed, each once
+/// @return how many voxels became Occupied
+std::int64_t mark_rays(VoxelMap& map, const VoxelIndex& sensor, std::span<const RayEnd> ends,
+                       std::vector<std::uint32_t>& changed_slots);
+
+}  // namespace nextview

@@ -1,0 +1,201 @@
+// MapBuilder against its plain twin, voxel by voxel, over random worlds, windows and views.
+#include <gtest/gtest.h>
+
+#include <numbers>
+#include <set>
+
+#include "analytic_world.h"
+#include "mapper/map_builder.h"
+#include "mapper/map_digest.h"
+#include "mapper/reference_map_update.h"
+
+namespace nextview {
+namespace {
+
+AnalyticWorld random_world(RandomStream& random, const Eigen::Vector3d& min,
+                           const Eigen::Vector3d& max) {
+  const auto point = [&] {
+    return Eigen::Vector3d(uniform(random, min[0], max[0]), uniform(random, min[1], max[1]),
+                           uniform(random, min[2], max[2]));
+  };
+  AnalyticWorld world;
+  const double margin = 0.1 * (max - min).norm();
+  if (random.below(4) != 0) {  // a room a little smaller or larger than the window
+    const auto shift = [&] { return Eigen::Vector3d::Constant(uniform(random, -margin, margin)); };
+    world.boxes.push_back({min + shift(), max + shift()});
+  }
+  for (std::uint32_t n = random.below(3); n > 0; --n) {
+    const Eigen::Vector3d corner = point();
+    world.boxes.push_back({corner, corner + Eigen::Vector3d::Constant(uniform(random, 0.1, 1.0))});
+  }
+  for (std::uint32_t n = random.below(3); n > 0; --n) {
+    world.spheres.push_back({point(), uniform(random, 0.1, 0.5) * margin});
+  }
+  if (random.below(2) == 0) {
+    const Eigen::Vector3d normal = (point() - point()).normalized();
+    world.planes.push_back({normal, normal.dot(point())});
+  }
+  return world;
+}
+
+struct Case {
+  VoxelGrid grid;
+  MapWindow window;
+  AnalyticWorld world;
+
+  Eigen::Vector3d corner_m(int which) const {
+    return grid.center_m(window.min + which * (window.size - VoxelIndex::Ones()));
+  }
+};
+
+Case random_case(RandomStream& random) {
+  Case c;
+  c.grid.voxel_size_m = random.below(2) == 0 ? 0.1 : uniform(random, 0.02, 0.3);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (random.below(2) == 0) c.grid.origin_m[axis] = uniform(random, -5.0, 5.0);
+    c.window.min[axis] = uniform_int(random, -40, 40);
+    const int sizes[] = {1, 7, 8, 16, 17, 24, 32, 40};
+    c.window.size[axis] = sizes[random.below(8)];
+  }
+  c.world = random_world(random, c.corner_m(0), c.corner_m(1));
+  return c;
+}
+
+RangeImage random_view(const Case& c, RandomStream& random) {
+  const TiltedLineScan sensor = TiltedLineScan::with_aperture(
+      uniform_int(random, 2, 24), uniform_int(random, 2, 16), uniform(random, 0.02, 1.5));
+  SensorPose pose;
+  for (int axis = 0; axis < 3; ++axis) {
+    pose.position_m[axis] = uniform(random, c.corner_m(0)[axis], c.corner_m(1)[axis]);
+  }
+  pose.pan_rad = uniform(random, -std::numbers::pi, std::numbers::pi);
+  pose.tilt_rad = uniform(random, -0.5, 0.5) * std::numbers::pi;
+  if (random.below(4) == 0) {  // rays along axes and through the corners of voxels
+    pose.position_m = c.grid.center_m(c.grid.voxel_of(pose.position_m));
+    pose.pan_rad = 0.5 * std::numbers::pi * uniform_int(random, -2, 2);
+    pose.tilt_rad = 0.5 * std::numbers::pi * uniform_int(random, -1, 1);
+  }
+  RangeLimits limits;
+  limits.min_m = random.below(2) == 0 ? 0.0 : 0.3;
+  limits.max_m = random.below(3) == 0 ? 1e7 : uniform(random, 0.5, 6.0);
+  const double noise_m = random.below(2) == 0 ? 0.0 : 0.02;
+  RangeImage image = scan_world(c.world, make_ray_table(sensor), limits, pose, noise_m, &random);
+  for (float& range_m : image.range_m) {
+    switch (random.below(40)) {
+      case 0:
+        range_m = std::numeric_limits<float>::quiet_NaN();
+        break;
+      case 1:
+        range_m = std::numeric_limits<float>::infinity();
+        break;
+      case 2:
+        range_m = static_cast<float>(uniform(random, 0.0, 5.0));
+        break;
+      case 3:
+        range_m = random.below(2) == 0 ? 0.0f : 3e38f;
+        break;
+      default:
+        break;
+    }
+    if (range_m < 0.0f) range_m = 0.0f;
+  }
+  return image;
+}
+
+void expect_equal_maps(const VoxelMap& map, const ReferenceMapUpdate& reference) {
+  const MapWindow& window = map.window();
+  for (int k = 0; k < window.size[2]; ++k) {
+    for (int j = 0; j < window.size[1]; ++j) {
+      for (int i = 0; i < window.size[0]; ++i) {
+        const VoxelIndex voxel = window.min + VoxelIndex(i, j, k);
+        ASSERT_EQ(map.label(voxel), reference.label(voxel)) << voxel.transpose();
+        const SurfaceVoxel* surface = map.surface(voxel);
+        const SurfaceVoxel* expected = reference.surface(voxel);
+        ASSERT_EQ(surface == nullptr, expected == nullptr) << voxel.transpose();
+        if (surface == nullptr) continue;
+        ASSERT_EQ(surface->normal_sum, expected->normal_sum) << voxel.transpose();
+        ASSERT_EQ(surface->normal_count, expected->normal_count) << voxel.transpose();
+        ASSERT_EQ(surface->quality, expected->quality) << voxel.transpose();
+      }
+    }
+  }
+}
+
+void expect_equal_statistics(const MapStatistics& a, const MapStatistics& b) {
+  EXPECT_EQ(a.voxels, b.voxels);
+  EXPECT_EQ(a.occupied_faces, b.occupied_faces);
+  EXPECT_EQ(a.occlusion_plane_faces, b.occlusion_plane_faces);
+  EXPECT_EQ(a.occupied_area_m2, b.occupied_area_m2);
+  EXPECT_EQ(a.occlusion_plane_area_m2, b.occlusion_plane_area_m2);
+  EXPECT_EQ(a.mean_quality, b.mean_quality);
+  EXPECT_EQ(a.min_quality, b.min_quality);
+}
+
+void expect_report(const FoldReport& report, const std::vector<Label>& before, const VoxelMap& map,
+                   const RangeImage& image) {
+  EXPECT_EQ(report.points + report.points_outside + report.no_returns + report.invalid,
+            static_cast<std::int64_t>(image.range_m.size()));
+  std::set<std::uint32_t> changed;
+  std::int64_t newly_occupied = 0;
+  for (std::uint32_t slot = 0; slot < before.size(); ++slot) {
+    if (before[slot] == map.labels()[slot]) continue;
+    changed.insert(slot);
+    if (map.labels()[slot] == Label::Occupied) ++newly_occupied;
+  }
+  EXPECT_EQ(report.newly_occupied, newly_occupied);
+  EXPECT_EQ(report.changed_slots.size(), changed.size());
+  EXPECT_EQ(std::set(report.changed_slots.begin(), report.changed_slots.end()), changed);
+  const MapWindow& window = map.window();
+  for (int axis = 0; axis < 3; ++axis) {
+    EXPECT_GE(report.changed_box.size[axis], 0);
+    EXPECT_LE(report.changed_box.size[axis], window.size[axis]);
+  }
+  for (int k = 0; k < window.size[2]; ++k) {
+    for (int j = 0; j < window.size[1]; ++j) {
+      for (int i = 0; i < window.size[0]; ++i) {
+        const VoxelIndex voxel = window.min + VoxelIndex(i, j, k);
+        const auto slot = static_cast<std::uint32_t>(map.slot(voxel));
+        EXPECT_TRUE(!changed.contains(slot) || report.changed_box.contains(voxel));
+      }
+    }
+  }
+}
+
+TEST(MapUpdate, EqualsItsPlainTwinOverRandomWorldsAndViews) {
+  int views = 0;
+  std::int64_t points = 0;
+  std::int64_t planes = 0;
+  std::int64_t with_normal = 0;
+  for (int n = 0; n < 2000; ++n) {
+    SCOPED_TRACE("case " + std::to_string(n));
+    RandomStream random(n, 1, 1, RandomPurpose::RangeNoise);
+    const Case c = random_case(random);
+    MapBuilder builder(c.grid, c.window);
+    ReferenceMapUpdate reference(c.grid, c.window);
+    for (int view = uniform_int(random, 1, 4); view > 0; --view) {
+      const RangeImage image = random_view(c, random);
+      const std::vector<Label> before(builder.map().labels().begin(), builder.map().labels().end());
+      const FoldReport& report = builder.fold(image);
+      reference.fold(image);
+      expect_equal_maps(builder.map(), reference);
+      expect_equal_statistics(builder.statistics(), reference.statistics());
+      expect_report(report, before, builder.map(), image);
+      EXPECT_EQ(builder.digest(), map_digest(builder.map()));
+      if (HasFailure()) return;
+      ++views;
+      points += report.points;
+      planes += builder.statistics().occlusion_plane_faces;
+      with_normal += builder.statistics().mean_quality > 0.0;
+    }
+  }
+  // The random worlds do exercise what is compared.
+  EXPECT_GT(views, 4000);
+  EXPECT_GT(points, 100'000);
+  EXPECT_GT(planes, 100'000);
+  EXPECT_GT(with_normal, 1000);
+  std::cout << views << " views, " << points << " points, " << with_normal
+            << " views with normals\n";
+}
+
+}  // namespace
+}  // namespace nextview
