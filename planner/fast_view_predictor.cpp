@@ -147,13 +147,13 @@ ViewCounts FastViewPredictor::predict_view(const View& view, std::int32_t start,
                                            std::int32_t first_k, Workspace& workspace) const {
   ViewCounts counts;
   for (const RayBundle& bundle : view.bundles) {
-    std::int32_t* met = nullptr;
+    RayEnds ends;
     if (counts_quality()) {
       workspace.met.resize(static_cast<std::size_t>(bundle.size()));
-      met = workspace.met.data();
+      ends.occupied_at = workspace.met.data();
     }
     const RayCounts rays =
-        cast_bundle(field_->bytes(), field_->shifts(), start, first_k, bundle, met);
+        cast_bundle(field_->bytes(), field_->shifts(), start, first_k, bundle, ends);
     counts.occupied += rays.occupied;
     counts.occlusion_plane += rays.occlusion_plane;
     counts.unseen += rays.unseen;

@@ -70,8 +70,22 @@ struct LaneCounts {
   Vector unseen;
 };
 
+// Sets the bits of the rays from i on; they must be clear where a byte is shared by vectors.
+template <class Mask>
+HWY_INLINE void store_bits(Mask mask, std::size_t i, std::uint8_t* bits) {
+  const Tag d;
+  if (hn::Lanes(d) >= 8) {
+    hn::StoreMaskBits(d, mask, bits + i / 8);
+    return;
+  }
+  std::uint8_t few[8] = {};
+  hn::StoreMaskBits(d, mask, few);
+  const auto kept = i % 8 == 0 ? 0U : bits[i / 8];
+  bits[i / 8] = static_cast<std::uint8_t>(kept | static_cast<unsigned>(few[0]) << (i % 8));
+}
+
 HWY_INLINE void count(const RayBundle& bundle, std::size_t i, const Rays& rays, LaneCounts& counts,
-                      std::int32_t* met) {
+                      const RayEnds& ends) {
   const Tag d;
   const auto too_far = hn::Gt(rays.k, hn::LoadU(d, &bundle.reach[i]));
   const Vector kind = hn::IfThenElse(too_far, hn::Set(d, FreeSpaceField::kOutside), rays.byte);
@@ -81,14 +95,19 @@ HWY_INLINE void count(const RayBundle& bundle, std::size_t i, const Rays& rays, 
   counts.occupied = hn::Sub(counts.occupied, hn::VecFromMask(d, occupied));
   counts.occlusion_plane = hn::Sub(counts.occlusion_plane, hn::VecFromMask(d, plane));
   counts.unseen = hn::Sub(counts.unseen, hn::VecFromMask(d, unseen));
-  if (met != nullptr) {
-    hn::StoreU(hn::IfThenElse(occupied, rays.offset, hn::Set(d, -1)), d, met + i);
+  if (ends.occupied_at != nullptr) {
+    hn::StoreU(hn::IfThenElse(occupied, rays.offset, hn::Set(d, -1)), d, ends.occupied_at + i);
+  }
+  if (ends.occupied != nullptr) {
+    store_bits(occupied, i, ends.occupied);
+    store_bits(plane, i, ends.occlusion_plane);
+    store_bits(unseen, i, ends.unseen);
   }
 }
 
 RayCounts CastBundle(const std::uint8_t* field, const std::array<int, 3>& shifts,
                      std::int32_t start, std::int32_t first_k, const RayBundle& bundle,
-                     std::int32_t* met) {
+                     const RayEnds& ends) {
   const Tag d;
   const std::size_t lanes = hn::Lanes(d);
   const auto axis = static_cast<std::size_t>(bundle.driving_axis);
@@ -109,16 +128,16 @@ RayCounts CastBundle(const std::uint8_t* field, const std::array<int, 3>& shifts
     while (moving(hn::Or(hn::Or(advance(walk, a), advance(walk, b)),
                          hn::Or(advance(walk, c), advance(walk, e))))) {
     }
-    count(bundle, i, a, counts, met);
-    count(bundle, i + lanes, b, counts, met);
-    count(bundle, i + 2 * lanes, c, counts, met);
-    count(bundle, i + 3 * lanes, e, counts, met);
+    count(bundle, i, a, counts, ends);
+    count(bundle, i + lanes, b, counts, ends);
+    count(bundle, i + 2 * lanes, c, counts, ends);
+    count(bundle, i + 3 * lanes, e, counts, ends);
   }
   for (; i < size; i += lanes) {
     Rays a = load(bundle, i, k);
     while (moving(advance(walk, a))) {
     }
-    count(bundle, i, a, counts, met);
+    count(bundle, i, a, counts, ends);
   }
   const auto total = [&d](Vector v) HWY_ATTR { return hn::GetLane(hn::SumOfLanes(d, v)); };
   return {total(counts.occupied), total(counts.occlusion_plane), total(counts.unseen)};
@@ -137,8 +156,8 @@ HWY_EXPORT(TargetName);
 
 RayCounts cast_bundle(const std::uint8_t* field, const std::array<int, 3>& shifts,
                       std::int32_t start, std::int32_t first_k, const RayBundle& bundle,
-                      std::int32_t* met) {
-  return HWY_DYNAMIC_DISPATCH(CastBundle)(field, shifts, start, first_k, bundle, met);
+                      const RayEnds& ends) {
+  return HWY_DYNAMIC_DISPATCH(CastBundle)(field, shifts, start, first_k, bundle, ends);
 }
 
 const char* ray_kernel_target() { return HWY_DYNAMIC_DISPATCH(TargetName)(); }

@@ -23,6 +23,15 @@ struct RayBundle {
 /// A bundle's size must be a multiple of this: the most rays one vector holds.
 constexpr int kBundleGranularity = 16;
 
+/// Where to write, on request, what every single ray of a bundle met. A set of bits holds ray i in
+/// bit i % 8 of byte i / 8, and must have room for the whole bundle.
+struct RayEnds {
+  std::int32_t* occupied_at = nullptr;  ///< offset of the Occupied voxel met, or -1
+  std::uint8_t* occupied = nullptr;     ///< bits: met an Occupied voxel
+  std::uint8_t* occlusion_plane = nullptr;
+  std::uint8_t* unseen = nullptr;
+};
+
 /// How many rays met what.
 struct RayCounts {
   int occupied = 0;
@@ -45,12 +54,10 @@ struct RayCounts {
 /// @param shifts   FreeSpaceField::shifts()
 /// @param start    offset of the sensor's voxel
 /// @param first_k  a step up to which all rays are known to meet only Empty, at least 1
-/// @param met      when not null, receives per ray of the bundle the offset of the Occupied voxel
-/// it
-///                 met, or -1
+/// @param ends     of which either occupied_at or the three sets of bits, or none, are asked for
 RayCounts cast_bundle(const std::uint8_t* field, const std::array<int, 3>& shifts,
                       std::int32_t start, std::int32_t first_k, const RayBundle& bundle,
-                      std::int32_t* met);
+                      const RayEnds& ends = {});
 
 /// The instruction set cast_bundle uses on this processor, e.g. "AVX2".
 const char* ray_kernel_target();

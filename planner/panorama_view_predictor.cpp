@@ -1,0 +1,179 @@
+#include "planner/panorama_view_predictor.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "sensor_sim/sensor_pose.h"
+
+namespace nextview {
+
+namespace {
+
+constexpr int kSide = PanoramaViewPredictor::kFaceSide;
+constexpr double kQuarter = std::numbers::pi / 4.0;
+
+// A cell of the panorama: a face of the cube (2 axis + (sign < 0)) and a row and column on it.
+struct Cell {
+  int face;
+  int row;
+  int column;
+};
+
+// Cells are numbered in tiles of 8 x 8, a word each, and in quarters of 4 x 4 inside, so that a
+// word's cells, and a vector's rays, are neighbours.
+int cell_number(const Cell& cell) {
+  const int tile = (cell.face * (kSide / 8) + cell.row / 8) * (kSide / 8) + cell.column / 8;
+  const int quarter = cell.row % 8 / 4 * 2 + cell.column % 8 / 4;
+  return tile * 64 + quarter * 16 + cell.row % 4 * 4 + cell.column % 4;
+}
+
+Eigen::Vector3d cell_direction(const Cell& cell) {
+  const auto slope = [](int i) { return std::tan(kQuarter * ((2 * i + 1.0) / kSide - 1.0)); };
+  const int axis = cell.face / 2;
+  Eigen::Vector3d direction;
+  direction[axis] = cell.face % 2 == 0 ? 1.0 : -1.0;
+  direction[(axis + 1) % 3] = slope(cell.column);
+  direction[(axis + 2) % 3] = slope(cell.row);
+  return direction.normalized();
+}
+
+Cell cell_of(const Eigen::Vector3d& direction) {
+  int axis = 0;
+  direction.cwiseAbs().maxCoeff(&axis);
+  const double depth = std::abs(direction[axis]);
+  const auto place = [depth](double across) {
+    const double angle = std::atan(across / depth);
+    return std::clamp(static_cast<int>((angle / kQuarter + 1.0) * kSide / 2.0), 0, kSide - 1);
+  };
+  return {2 * axis + (direction[axis] < 0.0), place(direction[(axis + 2) % 3]),
+          place(direction[(axis + 1) % 3])};
+}
+
+std::vector<RayBundle> cube_faces(double reach) {
+  std::vector<RayBundle> faces(6);
+  for (int face = 0; face < 6; ++face) {
+    RayBundle& bundle = faces[static_cast<std::size_t>(face)];
+    bundle.driving_axis = face / 2;
+    bundle.direction = face % 2 == 0 ? 1 : -1;
+    constexpr auto kRays = static_cast<std::size_t>(kSide * kSide);
+    bundle.slope1.resize(kRays);
+    bundle.slope2.resize(kRays);
+    bundle.reach.resize(kRays);
+    for (int row = 0; row < kSide; ++row) {
+      for (int column = 0; column < kSide; ++column) {
+        const Cell cell{face, row, column};
+        const auto ray = static_cast<std::size_t>(cell_number(cell) - face * kSide * kSide);
+        const IntegerLine line = line_along(VoxelIndex::Zero(), cell_direction(cell), reach);
+        // Rounding can make a cell at the very rim a tie between two driving axes, but no other
+        // axis ever advances more than the face's.
+        bundle.slope1[ray] = line.slope[(bundle.driving_axis + 1) % 3];
+        bundle.slope2[ray] = line.slope[(bundle.driving_axis + 2) % 3];
+        bundle.reach[ray] = line.steps;
+      }
+    }
+  }
+  return faces;
+}
+
+}  // namespace
+
+PanoramaViewPredictor::PanoramaViewPredictor(const PredictionRaster& raster, double voxel_size_m,
+                                             std::vector<Orientation> orientations)
+    : ViewPredictor(std::move(orientations), false),
+      voxel_size_m_(voxel_size_m),
+      rays_per_view_(static_cast<std::int64_t>(raster.rays.pixels())) {
+  if (this->orientations().empty() || rays_per_view_ == 0) {
+    throw std::invalid_argument("a view predictor needs orientations and rays");
+  }
+  if (!(voxel_size_m > 0.0) || !(raster.range_max_m > 0.0)) {
+    throw std::invalid_argument("a view predictor's voxel size and range must be positive");
+  }
+  faces_ = cube_faces(prediction_reach(raster, voxel_size_m));
+  for (const Orientation& orientation : this->orientations()) {
+    append_view(raster.rays, orientation);
+  }
+  for (auto* bits : {&panorama_.occupied, &panorama_.occlusion_plane, &panorama_.unseen}) {
+    bits->assign(kWords, 0);
+  }
+}
+
+void PanoramaViewPredictor::append_view(const RayTable& rays, const Orientation& orientation) {
+  const Eigen::Matrix3d rotation =
+      world_from_sensor_rotation(orientation.pan_rad, orientation.tilt_rad);
+  std::vector<std::uint32_t> weight(kCells, 0);
+  for (int v = 0; v < rays.rows(); ++v) {
+    for (int u = 0; u < rays.columns(); ++u) {
+      ++weight[static_cast<std::size_t>(cell_number(cell_of(rotation * rays.ray(u, v))))];
+    }
+  }
+  const auto begin = static_cast<std::uint32_t>(weights_.size());
+  for (std::uint32_t word = 0; word < kWords; ++word) {
+    const std::uint32_t* cells = &weight[std::size_t{word} * 64];
+    const std::uint32_t largest = *std::max_element(cells, cells + 64);
+    for (std::uint32_t plane = 0; largest >> plane != 0; ++plane) {
+      WeightWord bits{word, plane, 0};
+      for (int i = 0; i < 64; ++i) {
+        bits.cells |= static_cast<std::uint64_t>(cells[i] >> plane & 1) << i;
+      }
+      if (bits.cells != 0) weights_.push_back(bits);
+    }
+  }
+  views_.push_back({begin, static_cast<std::uint32_t>(weights_.size())});
+}
+
+void PanoramaViewPredictor::map_changed(const VoxelMap& map,
+                                        std::span<const std::uint32_t> changed_slots,
+                                        std::span<const std::uint32_t>) {
+  if (field_) {
+    field_->update(map, changed_slots);
+  } else {
+    field_.emplace(map);
+  }
+}
+
+// Compiled once more for processors that count bits in one instruction.
+[[gnu::target_clones("popcnt", "default")]] ViewCounts PanoramaViewPredictor::count(
+    const Panorama& panorama, const WeightWord* begin, const WeightWord* end) {
+  ViewCounts counts;
+  for (const WeightWord* weight = begin; weight != end; ++weight) {
+    const auto population = [weight](const std::vector<std::uint64_t>& bits) {
+      return static_cast<std::int64_t>(std::popcount(bits[weight->word] & weight->cells))
+             << weight->plane;
+    };
+    counts.occupied += population(panorama.occupied);
+    counts.occlusion_plane += population(panorama.occlusion_plane);
+    counts.unseen += population(panorama.unseen);
+  }
+  return counts;
+}
+
+void PanoramaViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
+                                    std::span<ViewCounts> per_orientation) {
+  if (!map.contains(sensor)) {
+    throw std::invalid_argument("a view cannot be predicted from outside the map's window");
+  }
+  if (per_orientation.size() != views_.size() || map.grid().voxel_size_m != voxel_size_m_) {
+    throw std::invalid_argument("a view predictor was made for other orientations or voxels");
+  }
+  if (!field_ || field_->window() != map.window()) field_.emplace(map);
+  const auto start = static_cast<std::int32_t>(field_->offset(sensor));
+  const int first_k = std::max(field_->at(sensor) - FreeSpaceField::kJump, 1);
+  for (std::size_t face = 0; face < faces_.size(); ++face) {
+    const std::size_t word = face * kSide * kSide / 64;
+    const RayEnds ends{nullptr, reinterpret_cast<std::uint8_t*>(&panorama_.occupied[word]),
+                       reinterpret_cast<std::uint8_t*>(&panorama_.occlusion_plane[word]),
+                       reinterpret_cast<std::uint8_t*>(&panorama_.unseen[word])};
+    cast_bundle(field_->bytes(), field_->shifts(), start, first_k, faces_[face], ends);
+  }
+  for (std::size_t i = 0; i < views_.size(); ++i) {
+    ViewCounts& counts = per_orientation[i];
+    counts = count(panorama_, &weights_[views_[i].begin], weights_.data() + views_[i].end);
+    counts.open = rays_per_view_ - counts.occupied - counts.occlusion_plane - counts.unseen;
+  }
+}
+
+}  // namespace nextview
