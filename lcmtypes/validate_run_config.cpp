@@ -10,7 +10,8 @@ namespace {
 void check_scene(Checks& checks, const run_config_t& config) {
   checks.positive("unit_m", config.unit_m);
   checks.finite("start_m", config.start_m);
-  checks.finite("start_pan_rad", config.start_pan_rad);
+  checks.within("start_pan_rad", config.start_pan_rad, -2.0 * std::numbers::pi,
+                2.0 * std::numbers::pi);
   checks.within("start_tilt_rad", config.start_tilt_rad, -std::numbers::pi / 2.0,
                 std::numbers::pi / 2.0);
   checks.require(!config.scene_file.empty(), "no scene_file");

@@ -1,0 +1,73 @@
+#include "base_sim/base_sim_process.h"
+
+#include <cmath>
+#include <vector>
+
+#include "sensor_sim/scene_config.h"
+
+namespace nextview {
+namespace {
+
+SensorPose start_of(const run_config_t& config) {
+  return {Eigen::Vector3d(config.start_m), config.start_pan_rad, config.start_tilt_rad};
+}
+
+arrival_t arrival_message(const goal_t& goal, const Motion& motion, double move_wall_s) {
+  arrival_t arrival{};
+  arrival.utime = goal.utime + std::llround(motion.duration_s * 1e6);
+  arrival.view = goal.view;
+  arrival.attempt = goal.attempt;
+  arrival.arrived = motion.arrived;
+  for (int axis = 0; axis < 3; ++axis) {
+    arrival.arrival_position_m[axis] = motion.pose.position_m[axis];
+  }
+  arrival.pan_rad = motion.pose.pan_rad;
+  arrival.tilt_rad = motion.pose.tilt_rad;
+  arrival.path_length_m = motion.path_length_m;
+  arrival.move_wall_s = move_wall_s;
+  arrival.refusal = motion.refusal;
+  return arrival;
+}
+
+}  // namespace
+
+BaseLimits base_limits_of(const run_config_t& config) {
+  return {.workspace_min_m = Eigen::Vector3d(config.workspace_min_m),
+          .workspace_max_m = Eigen::Vector3d(config.workspace_max_m),
+          .lift_min_m = config.lift_min_m,
+          .lift_max_m = config.lift_max_m,
+          .base_speed_m_s = config.base_speed_m_s,
+          .lift_speed_m_s = config.lift_speed_m_s,
+          .turn_speed_rad_s = config.turn_speed_rad_s,
+          .body_radius_m = config.body_radius_m};
+}
+
+BaseSimProcess::BaseSimProcess(Bus& bus, const run_config_t& config)
+    : bus_(bus),
+      scene_(load_scene(config)),
+      base_(base_limits_of(config), start_of(config), scene_) {
+  bus_.on<goal_t>([this](const goal_t& goal) { goals_.push_back(goal); });
+}
+
+bool BaseSimProcess::step() {
+  if (goals_.empty()) return false;
+  const goal_t goal = goals_.front();
+  goals_.pop_front();
+
+  std::vector<Eigen::Vector3d> waypoints_m;
+  for (const auto& waypoint : goal.waypoint_m) waypoints_m.emplace_back(waypoint.data());
+  const SensorPose pose{Eigen::Vector3d(goal.position_m), goal.pan_rad, goal.tilt_rad};
+  const auto start = std::chrono::steady_clock::now();
+  const Motion motion = base_.move(waypoints_m, pose);
+  const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
+  bus_.publish(arrival_message(goal, motion, wall.count()));
+  return true;
+}
+
+void BaseSimProcess::on_missing(const request_t& request) {
+  if (request.wanted_channel == Channel<arrival_t>::name) {
+    bus_.request<goal_t>(request.view, request.attempt);
+  }
+}
+
+}  // namespace nextview

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+
+#include "base_sim/base.h"
+#include "lcmtypes/bus_process.h"
+#include "sensor_sim/scene.h"
+
+namespace nextview {
+
+/// What the base of a run can do.
+BaseLimits base_limits_of(const run_config_t& config);
+
+/// The simulated base on the bus: an arrival, or a refusal, for every goal.
+class BaseSimProcess : public BusProcess {
+ public:
+  /// @throws SceneError when the run's scene cannot be loaded; std::invalid_argument when the run
+  ///         cannot start where it should
+  BaseSimProcess(Bus& bus, const run_config_t& config);
+
+  /// Moves to the next goal.
+  bool step() override;
+  void on_missing(const request_t& request) override;
+
+ private:
+  Bus& bus_;
+  Scene scene_;
+  Base base_;
+  std::deque<goal_t> goals_;
+};
+
+}  // namespace nextview

@@ -1,0 +1,51 @@
+#include "planner/goal_message.h"
+
+namespace nextview {
+namespace {
+
+goal_t goal_at(const SensorPose& pose, std::span<const Eigen::Vector3d> waypoints_m) {
+  goal_t goal{};
+  for (int axis = 0; axis < 3; ++axis) goal.position_m[axis] = pose.position_m[axis];
+  goal.pan_rad = pose.pan_rad;
+  goal.tilt_rad = pose.tilt_rad;
+  goal.waypoints = static_cast<std::int32_t>(waypoints_m.size());
+  for (const Eigen::Vector3d& waypoint_m : waypoints_m) {
+    goal.waypoint_m.push_back({waypoint_m.x(), waypoint_m.y(), waypoint_m.z()});
+  }
+  return goal;
+}
+
+}  // namespace
+
+goal_t goal_message(const Decision& decision) {
+  goal_t goal = goal_at(decision.pose, decision.waypoints_m);
+  goal.fitness = decision.fitness.value;
+  goal.share_occupied = decision.fitness.share_occupied;
+  goal.share_occlusion_plane = decision.fitness.share_occlusion_plane;
+  goal.share_unseen = decision.fitness.share_unseen;
+  goal.share_open = decision.fitness.share_open;
+  goal.quality_factor = decision.fitness.quality_factor;
+  goal.iterations = decision.iterations;
+  goal.evaluations = decision.evaluations;
+  return goal;
+}
+
+search_t search_message(const Decision& decision) {
+  search_t search{};
+  search.tried = static_cast<std::int32_t>(decision.tried.size());
+  for (const TriedPosition& tried : decision.tried) {
+    search.tried_position_m.push_back(
+        {tried.position_m.x(), tried.position_m.y(), tried.position_m.z()});
+    search.tried_pan_rad.push_back(tried.pan_rad);
+    search.tried_tilt_rad.push_back(tried.tilt_rad);
+    search.tried_fitness.push_back(tried.fitness);
+    search.tried_move.push_back(static_cast<std::int8_t>(tried.move));
+  }
+  return search;
+}
+
+goal_t start_goal_message(const SensorPose& start) {
+  return goal_at(start, std::span(&start.position_m, 1));
+}
+
+}  // namespace nextview

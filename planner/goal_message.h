@@ -1,0 +1,16 @@
+#pragma once
+
+#include "lcmtypes/channels.h"
+#include "planner/next_view.h"
+
+namespace nextview {
+
+/// A decision as it travels: the goal, and what was tried on the way to it. The keys, utime and
+/// wall-clock times are left for the sender to fill in.
+goal_t goal_message(const Decision& decision);
+search_t search_message(const Decision& decision);
+
+/// The goal of view 1: the start pose, where the sensor is already.
+goal_t start_goal_message(const SensorPose& start);
+
+}  // namespace nextview

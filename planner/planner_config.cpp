@@ -1,0 +1,43 @@
+#include "planner/planner_config.h"
+
+#include "planner/fast_view_predictor.h"
+#include "planner/orientations.h"
+#include "sensor_sim/sensor_config.h"
+
+namespace nextview {
+
+PlannerParameters planner_parameters_of(const run_config_t& config) {
+  PlannerParameters parameters;
+  parameters.use_quality = config.use_quality != 0;
+  parameters.step_min_m = config.step_min_m;
+  parameters.step_max_m = config.step_max_m;
+  parameters.fitness_tolerance = config.fitness_tolerance;
+  parameters.max_evaluations = config.max_evaluations;
+  parameters.feasibility.clearance_m = config.clearance_m;
+  parameters.feasibility.body_radius_m = config.body_radius_m;
+  parameters.feasibility.workspace_min_m = Eigen::Vector3d(config.workspace_min_m);
+  parameters.feasibility.workspace_max_m = Eigen::Vector3d(config.workspace_max_m);
+  parameters.feasibility.lift_min_m = config.lift_min_m;
+  parameters.feasibility.lift_max_m = config.lift_max_m;
+  return parameters;
+}
+
+StopParameters stop_parameters_of(const run_config_t& config) {
+  return {.max_views = config.max_views,
+          .use_quality = config.use_quality != 0,
+          .quality_threshold = config.quality_threshold,
+          .stop_window_views = config.stop_window_views,
+          .stop_new_area_m2 = config.stop_new_area_m2};
+}
+
+std::unique_ptr<ViewPredictor> make_predictor(const run_config_t& config) {
+  return std::make_unique<FastViewPredictor>(
+      prediction_raster(sensor_of(config), range_limits_of(config)), config.voxel_size_m,
+      icosahedron_orientations(), config.use_quality != 0);
+}
+
+SensorPose start_pose_of(const run_config_t& config) {
+  return {Eigen::Vector3d(config.start_m), config.start_pan_rad, config.start_tilt_rad};
+}
+
+}  // namespace nextview

@@ -1,0 +1,22 @@
+#pragma once
+
+#include <memory>
+
+#include "lcmtypes/channels.h"
+#include "planner/next_view.h"
+#include "planner/termination.h"
+#include "planner/view_predictor.h"
+
+namespace nextview {
+
+/// How the planner of a run searches, and when it has seen enough.
+PlannerParameters planner_parameters_of(const run_config_t& config);
+StopParameters stop_parameters_of(const run_config_t& config);
+
+/// The predictor a run's views are evaluated with.
+std::unique_ptr<ViewPredictor> make_predictor(const run_config_t& config);
+
+/// The pose of view 1.
+SensorPose start_pose_of(const run_config_t& config);
+
+}  // namespace nextview

@@ -1,0 +1,171 @@
+#include "planner/planner_process.h"
+
+#include <optional>
+
+#include "mapper/mapper_config.h"
+#include "planner/goal_message.h"
+#include "planner/planner_config.h"
+
+namespace nextview {
+namespace {
+
+double seconds_between(std::chrono::steady_clock::time_point start,
+                       std::chrono::steady_clock::time_point end) {
+  return std::chrono::duration<double>(end - start).count();
+}
+
+}  // namespace
+
+PlannerProcess::PlannerProcess(Bus& bus, const run_config_t& config)
+    : bus_(bus),
+      config_(config),
+      parameters_(planner_parameters_of(config)),
+      stop_parameters_(stop_parameters_of(config)),
+      builder_(grid_of(config), window_of(config)),
+      predictor_(make_predictor(config)) {
+  parameters_.check();
+  stop_parameters_.check();
+  subscribe();
+}
+
+void PlannerProcess::subscribe() {
+  bus_.on<arrival_t>([this](const arrival_t& arrival) {
+    if (arrival.arrived == 0) refusals_.emplace(std::pair(arrival.view, arrival.attempt), arrival);
+  });
+  bus_.on<range_image_t>([this](const range_image_t& part) {
+    check_fits_run(part, config_);
+    auto image = assembler_.add(part);
+    if (image) images_.emplace(part.view, std::move(*image));
+  });
+  bus_.on<commit_t>([this](const commit_t& commit) {
+    commits_.emplace(commit.view, commit);
+    commit_times_.emplace(commit.view, Clock::now());
+  });
+}
+
+bool PlannerProcess::step() {
+  if (ended_) return false;
+  if (view_ == 0) {
+    view_ = 1;
+    attempt_ = 1;
+    publish_goal(start_goal_message(start_pose_of(config_)));
+    return true;
+  }
+  if (!folded_) {
+    if (const auto image = images_.find(view_); image != images_.end()) {
+      fold(image->second);
+      images_.erase(images_.begin(), std::next(image));
+      return true;
+    }
+    if (const auto refusal = refusals_.find({view_, attempt_}); refusal != refusals_.end()) {
+      refused(refusal->second);
+      return true;
+    }
+    return false;
+  }
+  if (const auto commit = commits_.find(view_); commit != commits_.end()) {
+    finish_view(commit->second);
+    return true;
+  }
+  return false;
+}
+
+void PlannerProcess::fold(const ReceivedRangeImage& received) {
+  const auto start = Clock::now();
+  const FoldReport& report = builder_.fold(received.image);
+  predictor_->map_changed(builder_.map(), report.changed_slots, report.updated_surfaces);
+  fold_wall_s_ = seconds_between(start, Clock::now());
+  present_ = received.image.pose;
+  utime_ = received.utime;
+  folded_ = true;
+}
+
+void PlannerProcess::finish_view(const commit_t& commit) {
+  wait_wall_s_ = seconds_between(goal_time_, commit_times_.at(view_));
+  views_.push_back(
+      view_facts(commit.newly_occupied_voxels, config_.voxel_size_m, commit.min_quality));
+  const std::string digest = builder_.digest();
+  if (digest != commit.map_digest) {
+    stop(StopReason::DigestMismatch, "view " + std::to_string(view_) + ": the mapper's map has " +
+                                         commit.map_digest + ", the planner's " + digest);
+    return;
+  }
+  if (const auto reason = should_stop(views_, stop_parameters_)) {
+    attempt_ = 0;
+    stop(*reason, std::string(describe(*reason)));
+    return;
+  }
+  ++view_;
+  attempt_ = 1;
+  folded_ = false;
+  refused_.clear();
+  decide();
+}
+
+void PlannerProcess::refused(const arrival_t& arrival) {
+  utime_ = arrival.utime;
+  refused_.push_back(goal_);
+  if (view_ == 1 || attempt_ >= config_.max_attempts) {
+    stop(StopReason::NoFeasibleGoal, "view " + std::to_string(view_) + ": the base refused " +
+                                         std::to_string(attempt_) +
+                                         " goals, the last one because " + arrival.refusal);
+    return;
+  }
+  ++attempt_;
+  decide();
+}
+
+void PlannerProcess::decide() {
+  const auto start = Clock::now();
+  const std::optional<Decision> decision = decide_next_view(
+      builder_.map(), *predictor_, parameters_, present_, config_.seed, view_, attempt_, refused_);
+  if (!decision) {
+    stop(StopReason::NoFeasibleGoal,
+         "view " + std::to_string(view_) + ": no position is feasible from the last one");
+    return;
+  }
+  goal_t goal = goal_message(*decision);
+  goal.plan_wall_s = seconds_between(start, Clock::now());
+  publish_goal(std::move(goal));
+
+  search_t search = search_message(*decision);
+  search.utime = utime_;
+  search.view = view_;
+  search.attempt = attempt_;
+  search.fold_wall_s = fold_wall_s_;
+  search.wait_wall_s = wait_wall_s_;
+  bus_.publish(search);
+}
+
+void PlannerProcess::publish_goal(goal_t goal) {
+  goal.utime = utime_;
+  goal.view = view_;
+  goal.attempt = attempt_;
+  goal_ = {Eigen::Vector3d(goal.position_m), goal.pan_rad, goal.tilt_rad};
+  goal_time_ = Clock::now();
+  bus_.publish(std::move(goal));
+}
+
+void PlannerProcess::stop(StopReason reason, const std::string& detail) {
+  stop_t message{};
+  message.utime = utime_;
+  message.views = static_cast<std::int32_t>(views_.size());
+  message.final_attempt = attempt_;
+  message.fold_wall_s = fold_wall_s_;
+  message.wait_wall_s = wait_wall_s_;
+  message.stop_reason = std::string(to_string(reason));
+  message.detail = detail;
+  bus_.publish(message);
+  ended_ = true;
+}
+
+void PlannerProcess::ask_again() {
+  if (ended_) return;
+  if (folded_) {
+    bus_.request<commit_t>(view_, 0);
+  } else {
+    bus_.request<range_image_t>(view_, attempt_);
+  }
+}
+
+}  // namespace nextview

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <chrono>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lcmtypes/bus_process.h"
+#include "mapper/map_builder.h"
+#include "planner/next_view.h"
+#include "planner/termination.h"
+#include "planner/view_predictor.h"
+#include "sensor_sim/range_image_message.h"
+
+namespace nextview {
+
+/// The planner on the bus: a goal for every view, until the run ends.
+///
+/// It folds the same range images as the mapper with the mapper's own library and holds its digest
+/// against every commit, so the map it decides on is the map the run has.
+class PlannerProcess : public BusProcess {
+ public:
+  PlannerProcess(Bus& bus, const run_config_t& config);
+
+  /// Takes the run one step on: the first goal; the fold of a range image; after the commit the
+  /// next goal or the end; after a refusal the next attempt.
+  bool step() override;
+  /// Asks for the range image or the commit of the present view. Whoever lacks its own input for
+  /// that asks for it in turn, down to the goal.
+  void ask_again() override;
+  void on_missing(const request_t&) override {}  // it waits for nothing else to publish its own
+
+ private:
+  using Clock = std::chrono::steady_clock;
+
+  void subscribe();
+  void fold(const ReceivedRangeImage& received);
+  void finish_view(const commit_t& commit);
+  void refused(const arrival_t& arrival);
+  void decide();
+  void publish_goal(goal_t goal);
+  void stop(StopReason reason, const std::string& detail);
+
+  Bus& bus_;
+  run_config_t config_;
+  PlannerParameters parameters_;
+  StopParameters stop_parameters_;
+  MapBuilder builder_;
+  std::unique_ptr<ViewPredictor> predictor_;
+
+  // What has come and waits for its turn.
+  RangeImageAssembler assembler_;
+  std::map<int, ReceivedRangeImage> images_;           // by view
+  std::map<int, commit_t> commits_;                    // by view
+  std::map<std::pair<int, int>, arrival_t> refusals_;  // by view and attempt
+  std::map<int, Clock::time_point> commit_times_;      // by view
+
+  // Where the run is: attempt of view, which is folded or not; 0 before the first goal.
+  int view_ = 0;
+  int attempt_ = 0;
+  bool folded_ = false;
+  bool ended_ = false;
+  std::int64_t utime_ = 0;
+  SensorPose present_;               // of the last range image folded
+  SensorPose goal_;                  // of the present attempt
+  std::vector<SensorPose> refused_;  // goals of the present view
+  std::vector<ViewFacts> views_;     // committed
+  Clock::time_point goal_time_;
+  double fold_wall_s_ = 0.0;
+  double wait_wall_s_ = 0.0;
+};
+
+}  // namespace nextview

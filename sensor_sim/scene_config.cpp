@@ -1,0 +1,22 @@
+#include "sensor_sim/scene_config.h"
+
+#include "sensor_sim/mesh_file.h"
+#include "sensor_sim/triangle_mesh.h"
+
+namespace nextview {
+
+Scene load_scene(const run_config_t& config) {
+  SceneOptions options;
+  options.unit_m = config.unit_m;
+  options.up = parse_up_axis(config.scene_up);
+  TriangleMesh mesh = load_mesh(config.scene_file, options);
+  const std::string digest = mesh_digest(mesh);
+  if (digest != config.scene_digest) {
+    throw SceneError(config.scene_file + ": its triangles have digest " + digest +
+                     ", but the run was set up for " + config.scene_digest +
+                     "; has the file changed?");
+  }
+  return Scene(std::move(mesh));
+}
+
+}  // namespace nextview
