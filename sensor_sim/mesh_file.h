@@ -26,11 +26,11 @@ UpAxis parse_up_axis(std::string_view text);
 double parse_unit_m(std::string_view text);
 
 /// How to read a CAD file's coordinates. What is left unset is what the file itself says: COLLADA
-/// by its <up_axis> and <unit>, glTF by its specification (y up, metres); every other format says
-/// nothing and is read as z up and metres.
+/// by its <up_axis> and <unit>, glTF by its specification (y up, metres). Every other format is read
+/// as z up and metres; most say nothing, and what FBX may say is not asked.
 struct SceneOptions {
-  std::optional<double> unit_m;  ///< length of the file's unit of length
-  std::optional<UpAxis> up;      ///< the file's axis that becomes the world's z
+  std::optional<double> unit_m = {};  ///< length of the file's unit of length
+  std::optional<UpAxis> up = {};      ///< the file's axis that becomes the world's z
 };
 
 /// Loads the triangles of any file assimp reads, every node's transform applied, in a fixed order.

@@ -21,8 +21,9 @@ RangeImage scan(const Scene& scene, const RayTable& rays, const RangeLimits& lim
 /// scene.
 double escape_share(const Scene& scene, const Eigen::Vector3d& position_m);
 
-/// Volume seen from a position in all directions, from the same fixed set; +inf when any of them
-/// meets no surface. A position inside a piece of furniture sees very little.
+/// Volume seen from a position inside the scene's bounds, in the same directions and up to the
+/// bounds where they meet no surface. From inside a piece of furniture it is very small, whether the
+/// furniture has a bottom or not.
 double visible_volume_m3(const Scene& scene, const Eigen::Vector3d& position_m);
 
 }  // namespace nextview

@@ -45,7 +45,8 @@ class SceneJson {
     } catch (const std::invalid_argument& error) {
       fail(error.what());
     }
-    if (const auto start = get<std::array<double, 3>>("start")) {
+    if (const auto start = get<std::vector<double>>("start")) {
+      if (start->size() != 3) fail("\"start\": must be [x, y, z] in metres");
       scene.start_m = Eigen::Vector3d((*start)[0], (*start)[1], (*start)[2]);
     }
     if (const auto pan_deg = get<double>("start_pan_deg")) {
