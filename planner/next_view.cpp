@@ -15,7 +15,7 @@ namespace {
 constexpr double kInfeasible = -std::numeric_limits<double>::infinity();
 
 /// An infeasible vertex of the initial simplex is drawn again up to this many times. After the
-/// first scan only a narrow cone of space is known, about one random direction in forty; a draw
+/// first scan only a narrow cone of space is known, about a twentieth of all directions; a draw
 /// costs little beside a prediction.
 constexpr int kInitialDraws = 200;
 

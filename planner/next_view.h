@@ -19,7 +19,7 @@ namespace nextview {
 struct PlannerParameters {
   bool use_quality = false;  ///< f_quality in the fitness (eq. 4)
   double step_min_m = 0.3;   ///< distance of the initial simplex's vertices from the first ...
-  double step_max_m = 1.5;   ///< ... is drawn from this range
+  double step_max_m = 3.0;   ///< ... is drawn from this range
   double fitness_tolerance = 0.01;  ///< the simplex stops when its fitness range falls below
   int max_evaluations = 70;         ///< or after this many positions
   FeasibilityParameters feasibility;

@@ -42,8 +42,8 @@ TEST(Simplex, UsesEveryMove) {
                                          SimplexMove::Contraction1D, SimplexMove::Contraction3D}));
 }
 
-// Worked by hand: on f = x the vertex (0,0,0) is the worst; of the two equals UnitY and UnitZ the
-// older counts as the better, so the worst is UnitZ once (0,0,0) counts the same.
+// By hand: on f = x the values are 0, 1, 0, 0. The best is UnitX; of the three equal others the one
+// that came last, UnitZ, counts as the worst and is reflected.
 TEST(Simplex, ReflectsTheYoungestOfEqualWorstVertices) {
   const auto result = maximise_by_simplex(
       kCorner, [](const Vector3d& p) { return p.x(); }, 0.0, 5);
