@@ -26,8 +26,8 @@ UpAxis parse_up_axis(std::string_view text);
 double parse_unit_m(std::string_view text);
 
 /// How to read a CAD file's coordinates. What is left unset is what the file itself says: COLLADA
-/// by its <up_axis> and <unit>, glTF by its specification (y up, metres). Every other format is read
-/// as z up and metres; most say nothing, and what FBX may say is not asked.
+/// by its <up_axis> and <unit>, glTF by its specification (y up, metres). Every other format is
+/// read as z up and metres; most say nothing, and what FBX may say is not asked.
 struct SceneOptions {
   std::optional<double> unit_m = {};  ///< length of the file's unit of length
   std::optional<UpAxis> up = {};      ///< the file's axis that becomes the world's z
