@@ -22,8 +22,8 @@ RangeImage scan(const Scene& scene, const RayTable& rays, const RangeLimits& lim
 double escape_share(const Scene& scene, const Eigen::Vector3d& position_m);
 
 /// Volume seen from a position inside the scene's bounds, in the same directions and up to the
-/// bounds where they meet no surface. From inside a piece of furniture it is very small, whether the
-/// furniture has a bottom or not.
+/// bounds where they meet no surface. From inside a piece of furniture it is very small, whether
+/// the furniture has a bottom or not.
 double visible_volume_m3(const Scene& scene, const Eigen::Vector3d& position_m);
 
 }  // namespace nextview
