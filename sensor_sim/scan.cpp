@@ -45,7 +45,12 @@ class StripCaster {
         world_from_sensor_(world_from_sensor),
         origin_m_(position_m.cast<float>()),
         directions_(static_cast<std::size_t>((rays.columns() + kTileColumns - 1) / kTileColumns)),
-        distances_(directions_.size()) {}
+        distances_(directions_.size()),
+        column_sin_(rays.column_sin),
+        column_cos_(rays.column_cos) {
+    column_sin_.resize(directions_.size() * kTileColumns, column_sin_.back());
+    column_cos_.resize(directions_.size() * kTileColumns, column_cos_.back());
+  }
 
   // Writes the distances of rows first_row .. first_row + kTileRows - 1 into a whole image.
   void cast(int first_row, std::vector<float>& distance_m) {
@@ -74,14 +79,18 @@ class StripCaster {
     const Eigen::Vector3d row_axis = rays_.row_cos[row] * world_from_sensor_.col(1) +
                                      rays_.row_sin[row] * world_from_sensor_.col(2);
     const Eigen::Vector3d right = world_from_sensor_.col(0);
-    const std::size_t last = rays_.column_sin.size() - 1;
-    for (std::size_t u = 0; u < directions_.size() * kTileColumns; ++u) {
-      const double cosine = rays_.column_cos[std::min(u, last)];
-      const double sine = rays_.column_sin[std::min(u, last)];
-      Scene::Directions& tile = directions_[u / kTileColumns];
-      tile.x[lane(u, j)] = static_cast<float>(cosine * row_axis.x() - sine * right.x());
-      tile.y[lane(u, j)] = static_cast<float>(cosine * row_axis.y() - sine * right.y());
-      tile.z[lane(u, j)] = static_cast<float>(cosine * row_axis.z() - sine * right.z());
+    for (std::size_t tile = 0; tile < directions_.size(); ++tile) {
+      const double* sine = &column_sin_[tile * kTileColumns];
+      const double* cosine = &column_cos_[tile * kTileColumns];
+      const auto project = [&](int axis, float* lanes) {
+        for (std::size_t i = 0; i < kTileColumns; ++i) {
+          lanes[i] = static_cast<float>(cosine[i] * row_axis[axis] - sine[i] * right[axis]);
+        }
+      };
+      const std::size_t first_lane = lane(0, j);
+      project(0, &directions_[tile].x[first_lane]);
+      project(1, &directions_[tile].y[first_lane]);
+      project(2, &directions_[tile].z[first_lane]);
     }
   }
 
@@ -91,6 +100,8 @@ class StripCaster {
   Eigen::Vector3f origin_m_;
   std::vector<Scene::Directions> directions_;
   std::vector<Scene::Distances> distances_;
+  std::vector<double> column_sin_;  // of the ray table, the last one repeated to fill the last tile
+  std::vector<double> column_cos_;
 };
 
 float measured_range(double distance_m, const RangeLimits& limits) {
