@@ -8,21 +8,22 @@ namespace nextview {
 namespace {
 
 void check_scene(Checks& checks, const run_config_t& config) {
-  checks.positive("unit_m", config.unit_m);
+  checks.not_negative("unit_m", config.unit_m);  // 0: as the file says
   checks.finite("start_m", config.start_m);
   checks.within("start_pan_rad", config.start_pan_rad, -2.0 * std::numbers::pi,
                 2.0 * std::numbers::pi);
   checks.within("start_tilt_rad", config.start_tilt_rad, -std::numbers::pi / 2.0,
                 std::numbers::pi / 2.0);
   checks.require(!config.scene_file.empty(), "no scene_file");
-  checks.require(config.scene_up == "x" || config.scene_up == "y" || config.scene_up == "z",
-                 "scene_up is none of x, y, z");
+  checks.require(config.scene_up.empty() || config.scene_up == "x" || config.scene_up == "y" ||
+                     config.scene_up == "z",
+                 "scene_up is none of x, y, z and not empty");
   checks.digest("scene_digest", config.scene_digest);
 }
 
 void check_sensor(Checks& checks, const run_config_t& config) {
-  checks.within("columns", config.columns, 2, 4096);
-  checks.within("rows", config.rows, 2, 4096);
+  checks.within("columns", config.columns, 2, kMaxColumnsAndRows);
+  checks.within("rows", config.rows, 2, kMaxColumnsAndRows - config.columns);
   checks.positive("horizontal_aperture_rad", config.horizontal_aperture_rad);
   checks.positive("vertical_aperture_rad", config.vertical_aperture_rad);
   checks.require(

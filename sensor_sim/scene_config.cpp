@@ -7,8 +7,8 @@ namespace nextview {
 
 Scene load_scene(const run_config_t& config) {
   SceneOptions options;
-  options.unit_m = config.unit_m;
-  options.up = parse_up_axis(config.scene_up);
+  if (config.unit_m > 0.0) options.unit_m = config.unit_m;
+  if (!config.scene_up.empty()) options.up = parse_up_axis(config.scene_up);
   TriangleMesh mesh = load_mesh(config.scene_file, options);
   const std::string digest = mesh_digest(mesh);
   if (digest != config.scene_digest) {
