@@ -62,31 +62,33 @@ inline float constant_along_column(float w, float slope_a, float sin_a, float co
 /// The slope seen from one side.
 struct SlopeCandidate {
   float slope;         ///< NaN when that neighbour is missing
-  float bend;          ///< relative_bend at that neighbour: whether the one beyond it confirms
+  float bend;          ///< relative_bend at that neighbour: small if the one beyond it confirms the
+                       ///< slope, NaN if there is none beyond it
   float squared_step;  ///< to that neighbour
 };
 
 /// Chooses between the slopes of both sides. bend is the pixel's own, NaN when a side is missing.
 inline float choose_slope(const SlopeCandidate& previous, const SlopeCandidate& next, float bend) {
   constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-  const bool previous_fits = previous.bend <= kLargestBend;
-  const bool next_fits = next.bend <= kLargestBend;
+  // A slope that nothing confirms or contradicts counts as barely confirmed.
+  const float previous_bend = previous.bend == previous.bend ? previous.bend : kLargestBend;
+  const float next_bend = next.bend == next.bend ? next.bend : kLargestBend;
+  const bool previous_fits = previous_bend <= kLargestBend;
+  const bool next_fits = next_bend <= kLargestBend;
   const float mean = 0.5f * (previous.slope + next.slope);
 
-  // No neighbour confirms either side, as in noise: the mean, unless one side lies across a jump.
-  float both = next.squared_step > 4.0f * previous.squared_step   ? previous.slope
-               : previous.squared_step > 4.0f * next.squared_step ? next.slope
-                                                                  : mean;
-  // A crease: the side that is confirmed, better than the other.
-  const bool previous_better = previous.bend < next.bend;
-  both = previous_fits && (!next_fits || previous_better) ? previous.slope : both;
-  both = next_fits && !(previous_fits && previous_better) ? next.slope : both;
-  // A smooth surface.
-  both = bend <= kLargestBend ? mean : both;
+  // Both sides contradicted, as in noise: the mean, unless one side lies across a jump.
+  const float unconfirmed = next.squared_step > 4.0f * previous.squared_step   ? previous.slope
+                            : previous.squared_step > 4.0f * next.squared_step ? next.slope
+                                                                               : mean;
+  // A crease or an edge: the side that is confirmed, or confirmed better.
+  const float confirmed = previous_bend < next_bend ? previous.slope : next.slope;
+  const float one_sided = previous_fits | next_fits ? confirmed : unconfirmed;
+  const float both = bend <= kLargestBend ? mean : one_sided;
 
   // With one side only, it must not be contradicted.
-  const float only_previous = previous.bend > kLargestBend ? kNaN : previous.slope;
-  const float only_next = next.bend > kLargestBend ? kNaN : next.slope;
+  const float only_previous = previous_fits ? previous.slope : kNaN;
+  const float only_next = next_fits ? next.slope : kNaN;
   const bool has_previous = previous.slope == previous.slope;
   const bool has_next = next.slope == next.slope;
   return has_previous ? (has_next ? both : only_previous) : only_next;

@@ -191,7 +191,7 @@ TEST(MapUpdate, EqualsItsPlainTwinOverRandomWorldsAndViews) {
   // The random worlds do exercise what is compared.
   EXPECT_GT(views, 4000);
   EXPECT_GT(points, 100'000);
-  EXPECT_GT(planes, 100'000);
+  EXPECT_GT(planes, 50'000);
   EXPECT_GT(with_normal, 1000);
   std::cout << views << " views, " << points << " points, " << with_normal
             << " views with normals\n";
