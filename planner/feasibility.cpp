@@ -97,9 +97,16 @@ FeasibleSpace::FeasibleSpace(const VoxelMap& map, const FeasibilityParameters& p
       }
     }
   }
-  std::stable_sort(offsets_.begin(), offsets_.end(), [](const Offset& a, const Offset& b) {
-    return a.squared_length < b.squared_length;
-  });
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const int sign : {-1, 1}) {
+      for (const Offset& offset : offsets_) {
+        const int before = (offset.step + sign * VoxelIndex::Unit(axis)).squaredNorm();
+        const bool enters_clearance = offset.squared_length < clear_ && before >= clear_;
+        const bool enters_body = offset.squared_length < body_ && before >= body_;
+        if (enters_clearance || enters_body) entered_by(axis, sign).push_back(offset);
+      }
+    }
+  }
 }
 
 bool FeasibleSpace::reachable(const Eigen::Vector3d& position_m) {
@@ -122,25 +129,44 @@ bool FeasibleSpace::is_refused(const Eigen::Vector3d& position_m) const {
 }
 
 bool FeasibleSpace::path_clear(const Eigen::Vector3d& position_m) {
-  const int at_present = surroundings(present_).nearest_occupied;
+  const int at_present = surroundings(present_, nullptr).nearest_occupied;
   bool got_clear = at_present == clear_;
+  VoxelIndex last = present_;
   for (const VoxelIndex& voxel : voxels_along(map_.grid(), present_m_, position_m)) {
     if (voxel == present_) continue;
     if (map_.label(voxel) != Label::Empty) return false;
-    const Surroundings& near = surroundings(voxel);
+    const Surroundings& near = surroundings(voxel, &last);
     if (near.unknown_near) return false;
     if (near.nearest_occupied < (got_clear ? clear_ : at_present)) return false;
     got_clear = got_clear || near.nearest_occupied == clear_;
+    last = voxel;
   }
   return true;
 }
 
-const FeasibleSpace::Surroundings& FeasibleSpace::surroundings(const VoxelIndex& voxel) {
+const FeasibleSpace::Surroundings& FeasibleSpace::surroundings(const VoxelIndex& voxel,
+                                                               const VoxelIndex* neighbour) {
   const auto [entry, inserted] = known_.try_emplace(map_.slot(voxel));
   Surroundings& result = entry->second;
   if (!inserted) return result;
-  result.nearest_occupied = clear_;
-  for (const auto& [step, squared_length] : offsets_) {
+  if (neighbour != nullptr) {
+    const auto known = known_.find(map_.slot(*neighbour));
+    if (known != known_.end() && is_clear(known->second)) {
+      const VoxelIndex step = voxel - *neighbour;
+      int axis = 0;
+      step.cwiseAbs().maxCoeff(&axis);
+      result = look_around(voxel, entered_by(axis, step[axis]));
+      if (is_clear(result)) return result;
+    }
+  }
+  result = look_around(voxel, offsets_);
+  return result;
+}
+
+FeasibleSpace::Surroundings FeasibleSpace::look_around(const VoxelIndex& voxel,
+                                                       const std::vector<Offset>& offsets) const {
+  Surroundings result{clear_, false};
+  for (const auto& [step, squared_length] : offsets) {
     const VoxelIndex neighbour = voxel + step;
     const Label label = map_.label(neighbour);
     if (label == Label::Empty) continue;

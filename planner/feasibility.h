@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 #include <limits>
 #include <span>
 #include <unordered_map>
@@ -79,7 +80,16 @@ class FeasibleSpace {
   bool within_limits(const Eigen::Vector3d& position_m) const;
   bool is_refused(const Eigen::Vector3d& position_m) const;
   bool path_clear(const Eigen::Vector3d& position_m);
-  const Surroundings& surroundings(const VoxelIndex& voxel);
+  bool is_clear(const Surroundings& near) const {
+    return near.nearest_occupied == clear_ && !near.unknown_near;
+  }
+  // A neighbour that shares a face and is clear saves most of the work: only what the step from
+  // there brings near for the first time is looked at.
+  const Surroundings& surroundings(const VoxelIndex& voxel, const VoxelIndex* neighbour);
+  Surroundings look_around(const VoxelIndex& voxel, const std::vector<Offset>& offsets) const;
+  std::vector<Offset>& entered_by(int axis, int sign) {
+    return entered_[static_cast<std::size_t>(2 * axis + (sign > 0 ? 1 : 0))];
+  }
 
   const VoxelMap& map_;
   FeasibilityParameters parameters_;
@@ -89,7 +99,8 @@ class FeasibleSpace {
   int clear_;      // squared distances below this are nearer than the clearance; voxels
   int body_;       // the same for the body radius
   int departure_;  // and for the departure
-  std::vector<Offset> offsets_;  // of all voxels nearer than clearance or body radius, near first
+  std::vector<Offset> offsets_;  // of all voxels nearer than clearance or body radius
+  std::array<std::vector<Offset>, 6> entered_;  // those a step along an axis brings near, by step
   std::unordered_map<std::size_t, Surroundings> known_;  // by slot, as far as asked for
 };
 

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -124,6 +125,77 @@ TEST_F(EmptyHall, RefusedGoalsAndWhatLiesBehindThemAreLeftOut) {
   EXPECT_TRUE(reachable({2.0, 2.0, 1.0}));
   EXPECT_TRUE(reachable({2.5, 3.0, 1.0}));
   EXPECT_TRUE(reachable(present_m));
+}
+
+// The rules of FeasibleSpace, looking all around every voxel of the path.
+bool plainly_reachable(const VoxelMap& map, const FeasibilityParameters& parameters,
+                       const Vector3d& from_m, const Vector3d& to_m) {
+  const VoxelIndex present = map.grid().voxel_of(from_m);
+  const int reach = 5;
+  const auto nearest_occupied = [&](const VoxelIndex& voxel) {
+    int nearest = 16;  // 0.40 m, squared voxels
+    for (int k = -reach; k <= reach; ++k) {
+      for (int j = -reach; j <= reach; ++j) {
+        for (int i = -reach; i <= reach; ++i) {
+          const VoxelIndex step(i, j, k);
+          if (map.label(voxel + step) == Label::Occupied) {
+            nearest = std::min(nearest, step.squaredNorm());
+          }
+        }
+      }
+    }
+    return nearest;
+  };
+  const auto unknown_near = [&](const VoxelIndex& voxel) {
+    for (int k = -1; k <= 1; ++k) {
+      for (int j = -1; j <= 1; ++j) {
+        for (int i = -1; i <= 1; ++i) {  // nearer than 0.20 m
+          const VoxelIndex at = voxel + VoxelIndex(i, j, k);
+          const Label label = map.label(at);
+          const bool unknown = label != Label::Empty && label != Label::Occupied;
+          if (unknown && (at - present).squaredNorm() >= 64) return true;  // from 0.80 m on
+        }
+      }
+    }
+    return false;
+  };
+  if (!(to_m.array() >= parameters.workspace_min_m.array()).all()) return false;
+  int allowed = nearest_occupied(present);
+  for (const VoxelIndex& voxel : voxels_along(map.grid(), from_m, to_m)) {
+    if (voxel == present) continue;
+    const int nearest = nearest_occupied(voxel);
+    if (map.label(voxel) != Label::Empty || unknown_near(voxel) || nearest < allowed) return false;
+    if (nearest == 16) allowed = 16;
+  }
+  return true;
+}
+
+TEST_F(EmptyHall, AgreesWithLookingAllAroundEveryVoxel) {
+  RandomStream random(4, 1, 1, RandomPurpose::InitialSimplex);
+  const auto below = [&random](int n) {
+    return static_cast<int>(random.below(static_cast<std::uint32_t>(n)));
+  };
+  int reached = 0;
+  int cases = 0;
+  for (int round = 0; round < 60; ++round) {
+    fill({0, 0, 0}, {40, 40, 20}, Label::Empty);
+    for (int block = 0; block < 12; ++block) {
+      const VoxelIndex corner(below(38), below(38), below(18));
+      fill(corner, corner + VoxelIndex(1 + below(2), 1 + below(2), 1 + below(2)),
+           static_cast<Label>(block % 2 == 0 ? below(3) : 4));
+    }
+    FeasibleSpace space(map, parameters, present_m, refused);  // remembers from one to the next
+    for (int i = 0; i < 80; ++i) {
+      const Vector3d to_m(4.0 * random.uniform(), 4.0 * random.uniform(), 2.0 * random.uniform());
+      const bool expected = plainly_reachable(map, parameters, present_m, to_m);
+      ASSERT_EQ(space.reachable(to_m), expected) << "round " << round << ", " << to_m.transpose();
+      reached += expected;
+      ++cases;
+    }
+  }
+  EXPECT_EQ(cases, 4800);
+  EXPECT_GT(reached, 500);
+  EXPECT_LT(reached, 4300);
 }
 
 TEST_F(EmptyHall, ParametersThatCannotBeAreNamed) {
