@@ -19,6 +19,10 @@ namespace nextview {
 /// The largest message anybody publishes: what a socket's buffer takes several of on one host.
 constexpr std::size_t kMaxMessageBytes = 60 * 1024;
 
+/// The largest raster, columns and rows added up: its ray table, which every part of a range image
+/// carries, then takes half of a message at most.
+constexpr int kMaxColumnsAndRows = 1920;
+
 /// What tells the messages of one channel of one run apart.
 struct MessageKey {
   std::int32_t view = 0;     ///< 0 for messages that belong to no view

@@ -55,9 +55,9 @@ bool is_rotation(const double (&m)[3][3]) {
 }
 
 void check_part(Checks& checks, const range_image_t& image) {
-  checks.require(image.columns >= 2 && image.columns <= 4096,
-                 "columns " + std::to_string(image.columns));
-  checks.require(image.rows >= 2 && image.rows <= 4096, "rows " + std::to_string(image.rows));
+  checks.require(image.columns >= 2 && image.rows >= 2 &&
+                     std::int64_t{image.columns} + image.rows <= kMaxColumnsAndRows,
+                 "raster of " + std::to_string(image.columns) + " x " + std::to_string(image.rows));
   const std::int64_t all = std::int64_t{image.columns} * image.rows;
   const std::int64_t end = std::int64_t{image.first_pixel} + image.pixels;
   checks.require(image.parts >= 1 && image.parts <= all, "parts " + std::to_string(image.parts));

@@ -1,0 +1,214 @@
+#include "lcmtypes/bus.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/lcmtypes/examples.h"
+#include "tests/lcmtypes/lossy_network.h"
+
+namespace nextview {
+namespace {
+
+using std::chrono::milliseconds;
+
+class BusPair : public testing::Test {
+ protected:
+  explicit BusPair(const LossyNetwork::Faults& faults = {}) : network_(faults) {}
+
+  void settle() {
+    while (planner_.handle(milliseconds(0)) || mapper_.handle(milliseconds(0))) {
+    }
+  }
+  // Everything published on a channel, by whomever.
+  std::vector<LossyNetwork::Bytes> on_channel(std::string_view channel) const {
+    std::vector<LossyNetwork::Bytes> result;
+    for (const auto& [name, bytes] : network_.published()) {
+      if (name == channel) result.push_back(bytes);
+    }
+    return result;
+  }
+
+  LossyNetwork network_;
+  Bus planner_{network_.connect(), 7, "planner"};
+  Bus mapper_{network_.connect(), 7, "mapper"};
+};
+
+TEST_F(BusPair, DeliversWhatIsPublishedOnceWithItsRun) {
+  std::vector<goal_t> received;
+  mapper_.on<goal_t>([&](const goal_t& goal) { received.push_back(goal); });
+  goal_t goal = example<goal_t>();
+  goal.run = 99;
+  planner_.publish(goal);
+  settle();
+  ASSERT_EQ(received.size(), 1U);
+  EXPECT_EQ(received[0].run, 7);
+  EXPECT_EQ(received[0].waypoint_m, goal.waypoint_m);
+  EXPECT_EQ(mapper_.counters().delivered, 1);
+}
+
+TEST_F(BusPair, AnswersRequestsWithTheSameBytesAsOftenAsAsked) {
+  int received = 0;
+  mapper_.on<goal_t>([&](const goal_t&) { ++received; });
+  planner_.publish(example<goal_t>());
+  for (int i = 0; i < 3; ++i) mapper_.request<goal_t>(2, 1);
+  settle();
+  const auto goals = on_channel("NEXTVIEW_GOAL");
+  ASSERT_EQ(goals.size(), 4U);
+  for (const auto& bytes : goals) EXPECT_EQ(bytes, goals[0]);
+  EXPECT_EQ(received, 1);
+  EXPECT_EQ(mapper_.counters().duplicates, 3);
+  EXPECT_EQ(planner_.counters().answered, 3);
+}
+
+TEST_F(BusPair, AnswersWithAllAttemptsAndAllPartsWhenAskedForAnyAttempt) {
+  goal_t goal = example<goal_t>();
+  for (int view = 1; view <= 3; ++view) {
+    for (int attempt = 1; attempt <= 2; ++attempt) {
+      goal.view = view;
+      goal.attempt = attempt;
+      planner_.publish(goal);
+    }
+  }
+  mapper_.request<goal_t>(2, 0);
+  settle();
+  EXPECT_EQ(planner_.counters().answered, 2);
+  mapper_.request<goal_t>(2, 2);
+  settle();
+  EXPECT_EQ(planner_.counters().answered, 3);
+  mapper_.request<goal_t>(2, 3);
+  mapper_.request<goal_t>(4, 0);
+  settle();
+  EXPECT_EQ(planner_.counters().answered, 3);
+}
+
+TEST_F(BusPair, HandsARequestNothingAnswersToTheProcess) {
+  std::vector<request_t> missing;
+  planner_.on_missing([&](const request_t& request) { missing.push_back(request); });
+  mapper_.on_missing([](const request_t&) { FAIL() << "its own request"; });
+  mapper_.request<goal_t>(5, 0);
+  settle();
+  ASSERT_EQ(missing.size(), 1U);
+  EXPECT_EQ(missing[0].wanted_channel, "NEXTVIEW_GOAL");
+  EXPECT_EQ(missing[0].view, 5);
+  EXPECT_EQ(missing[0].asker, "mapper");
+}
+
+TEST_F(BusPair, StatusMessagesAreAlwaysFresh) {
+  int received = 0;
+  mapper_.on<status_t>([&](const status_t&) { ++received; });
+  int asked = 0;
+  planner_.on_missing([&](const request_t&) { ++asked; });
+  planner_.publish(example<status_t>());
+  planner_.publish(example<status_t>());
+  mapper_.request<status_t>(0, 0);
+  settle();
+  EXPECT_EQ(received, 2);
+  EXPECT_EQ(asked, 1);
+  EXPECT_EQ(mapper_.counters().duplicates, 0);
+}
+
+TEST_F(BusPair, IgnoresAndCountsOtherRuns) {
+  Bus stranger(network_.connect(), 8, "planner");
+  int received = 0;
+  mapper_.on<goal_t>([&](const goal_t&) { ++received; });
+  stranger.publish(example<goal_t>());
+  stranger.request<goal_t>(2, 1);
+  settle();
+  EXPECT_EQ(received, 0);
+  EXPECT_EQ(mapper_.counters().strangers, 2);
+  EXPECT_EQ(mapper_.counters().dropped, 0);
+}
+
+TEST_F(BusPair, DropsWhatCannotBeRightWithALineAndTakesTheRightOneAfterwards) {
+  int received = 0;
+  mapper_.on<goal_t>([&](const goal_t&) { ++received; });
+  const auto raw = network_.connect();
+  goal_t wrong = example<goal_t>();
+  wrong.position_m[0] = std::numeric_limits<double>::quiet_NaN();
+  testing::internal::CaptureStderr();
+  raw->publish("NEXTVIEW_GOAL", encode(wrong));
+  raw->publish("NEXTVIEW_GOAL", std::vector<std::uint8_t>(100, 0xff));
+  raw->publish("NEXTVIEW_REQUEST", {});
+  settle();
+  const std::string lines = testing::internal::GetCapturedStderr();
+  EXPECT_NE(lines.find("mapper: dropped a message on NEXTVIEW_GOAL: position_m"), std::string::npos)
+      << lines;
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 4) << lines;  // the request twice
+  EXPECT_EQ(mapper_.counters().dropped, 3);
+  EXPECT_EQ(planner_.counters().dropped, 1);
+  EXPECT_EQ(received, 0);
+  planner_.publish(example<goal_t>());
+  settle();
+  EXPECT_EQ(received, 1);
+}
+
+TEST_F(BusPair, AHandlerMayRejectAMessageAndIsGivenItAgain) {
+  int calls = 0;
+  mapper_.on<goal_t>([&](const goal_t&) {
+    if (++calls == 1) throw RejectedMessage("view 2 of a run of 1");
+  });
+  testing::internal::CaptureStderr();
+  planner_.publish(example<goal_t>());
+  mapper_.request<goal_t>(2, 1);
+  settle();
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("NEXTVIEW_GOAL: view 2 of a run of 1"),
+            std::string::npos);
+  EXPECT_EQ(calls, 2);
+  EXPECT_EQ(mapper_.counters().dropped, 1);
+  EXPECT_EQ(mapper_.counters().delivered, 1);
+}
+
+TEST_F(BusPair, WhatAHandlerThrowsComesOut) {
+  mapper_.on<goal_t>([](const goal_t&) { throw std::runtime_error("a fault of our own"); });
+  planner_.publish(example<goal_t>());
+  EXPECT_THROW(settle(), std::runtime_error);
+}
+
+TEST_F(BusPair, RefusesToPublishWhatItWouldNotAccept) {
+  goal_t wrong = example<goal_t>();
+  wrong.view = 0;
+  EXPECT_THROW(planner_.publish(wrong), std::logic_error);
+  goal_t large = example<goal_t>();
+  large.waypoints = 3000;
+  large.waypoint_m.resize(3000, {0.0, 0.0, 0.0});
+  EXPECT_THROW(planner_.publish(large), std::logic_error);
+  planner_.publish(example<goal_t>());
+  goal_t other = example<goal_t>();
+  other.pan_rad = 1.0;
+  EXPECT_THROW(planner_.publish(other), std::logic_error);
+  EXPECT_EQ(on_channel("NEXTVIEW_GOAL").size(), 1U);
+}
+
+class LossyBusPair : public BusPair {
+ protected:
+  LossyBusPair() : BusPair({.loss = 0.5, .repeat = 0.2, .overtake = 0.2}) {}
+};
+
+TEST_F(LossyBusPair, LosesNothingForWhoeverAsksAgain) {
+  constexpr int kGoals = 200;
+  std::vector<bool> received(kGoals + 1);
+  mapper_.on<goal_t>([&](const goal_t& goal) {
+    EXPECT_FALSE(received[static_cast<std::size_t>(goal.view)]) << "twice";
+    received[static_cast<std::size_t>(goal.view)] = true;
+  });
+  goal_t goal = example<goal_t>();
+  for (int view = 1; view <= kGoals; ++view) {
+    goal.view = view;
+    planner_.publish(goal);
+  }
+  settle();
+  const std::int64_t at_first = mapper_.counters().delivered;
+  EXPECT_LT(at_first, kGoals);
+  for (int view = 1; view <= kGoals; ++view) {
+    for (int asked = 0; !received[static_cast<std::size_t>(view)]; ++asked) {
+      ASSERT_LT(asked, 100);
+      mapper_.request<goal_t>(view, 0);
+      settle();
+    }
+  }
+  EXPECT_EQ(mapper_.counters().delivered, kGoals);
+  EXPECT_GT(mapper_.counters().duplicates, 0);
+  EXPECT_GT(network_.lost(), kGoals / 2);
+}
+
+}  // namespace
+}  // namespace nextview

@@ -1,0 +1,178 @@
+#include "lcmtypes/decode.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <iostream>
+#include <limits>
+#include <random>
+#include <set>
+
+#include "tests/lcmtypes/allocation_watch.h"
+#include "tests/lcmtypes/examples.h"
+
+namespace nextview {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+void put_int32(Bytes& bytes, std::size_t offset, std::int32_t value) {
+  const auto bits = static_cast<std::uint32_t>(value);
+  for (std::size_t i = 0; i < 4; ++i) {
+    bytes.at(offset + i) = static_cast<std::uint8_t>(bits >> (24 - 8 * i));
+  }
+}
+
+Bytes resized(const Bytes& bytes, std::size_t size) {
+  Bytes result(size);
+  std::copy_n(bytes.begin(), std::min(size, bytes.size()), result.begin());
+  return result;
+}
+
+template <class Message>
+std::string reason_for(const Bytes& bytes) {
+  const Decoded<Message> decoded = decode_checked<Message>(bytes);
+  EXPECT_EQ(decoded.message.has_value(), decoded.reason.empty());
+  EXPECT_EQ(decoded.reason.find('\n'), std::string::npos);
+  return decoded.reason;
+}
+
+template <class Message>
+class EveryType : public testing::Test {};
+using AllTypes = testing::Types<run_config_t, goal_t, search_t, arrival_t, range_image_t, commit_t,
+                                stop_t, status_t, request_t>;
+TYPED_TEST_SUITE(EveryType, AllTypes);
+
+TYPED_TEST(EveryType, SurvivesTheRoundTripUnchanged) {
+  const Bytes bytes = encode(example<TypeParam>());
+  const Decoded<TypeParam> decoded = decode_checked<TypeParam>(bytes);
+  ASSERT_TRUE(decoded.message) << decoded.reason;
+  EXPECT_EQ(encode(*decoded.message), bytes);
+}
+
+TYPED_TEST(EveryType, IsRefusedWhenCutShortAnywhereOrTooLong) {
+  const Bytes bytes = encode(example<TypeParam>());
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    EXPECT_NE(reason_for<TypeParam>(Bytes(bytes.begin(), bytes.begin() + static_cast<long>(size))),
+              "")
+        << size;
+  }
+  for (std::size_t extra : {1, 4, 1000}) {
+    EXPECT_NE(reason_for<TypeParam>(resized(bytes, bytes.size() + extra)), "") << extra;
+  }
+}
+
+TYPED_TEST(EveryType, IsRefusedAsAnyOtherType) {
+  const Bytes bytes = encode(example<TypeParam>());
+  int others = 0;
+  for_each_channel([&]<class Other>() {
+    if constexpr (!std::is_same_v<Other, TypeParam>) {
+      EXPECT_NE(reason_for<Other>(bytes), "") << Channel<Other>::name;
+      ++others;
+    }
+  });
+  EXPECT_EQ(others, 8);
+}
+
+TYPED_TEST(EveryType, IsRefusedWithAnyArrayLengthButItsOwn) {
+  const Bytes bytes = encode(example<TypeParam>());
+  for (const LengthField& field : Channel<TypeParam>::lengths) {
+    for (const std::int32_t length :
+         {std::numeric_limits<std::int32_t>::min(), -1, 0, 1, 5, 1000, 0x10000000, 0x20000000,
+          0x40000000, std::numeric_limits<std::int32_t>::max()}) {
+      Bytes wrong = bytes;
+      put_int32(wrong, field.offset, length);
+      EXPECT_NE(reason_for<TypeParam>(wrong), "") << "offset " << field.offset << " " << length;
+    }
+  }
+}
+
+TYPED_TEST(EveryType, IsRefusedWithAnyStringLengthButItsOwn) {
+  if constexpr (Channel<TypeParam>::strings > 0) {
+    const Bytes bytes = encode(example<TypeParam>());
+    constexpr auto kStrings = static_cast<std::size_t>(Channel<TypeParam>::strings);
+    const std::size_t first = static_cast<std::size_t>(TypeParam{}.getEncodedSize()) -
+                              5 * kStrings - Channel<TypeParam>::tail;
+    for (const std::int32_t length : {std::numeric_limits<std::int32_t>::min(), -1, 0, 100000,
+                                      std::numeric_limits<std::int32_t>::max()}) {
+      Bytes wrong = bytes;
+      put_int32(wrong, first, length);
+      EXPECT_NE(reason_for<TypeParam>(wrong), "") << length;
+    }
+  }
+}
+
+// What no decoder may do with any bytes: crash, throw, allocate out of proportion, or accept what
+// does not mean itself.
+TYPED_TEST(EveryType, MakesTheDecoderNeitherCrashNorAllocateWhateverItsBytes) {
+  constexpr int kCases = 20000;
+  constexpr std::array<std::int32_t, 8> kNastyLengths = {
+      std::numeric_limits<std::int32_t>::min(),
+      std::numeric_limits<std::int32_t>::max(),
+      -1,
+      0,
+      1,
+      0x20000000,
+      0x7f800000,
+      0x7ff80000};  // the last two begin an infinity and a NaN
+  const Bytes original = encode(example<TypeParam>());
+  std::mt19937_64 random(1);
+  const auto below = [&](std::size_t n) { return static_cast<std::size_t>(random() % n); };
+  int accepted = 0;
+  int refused = 0;
+  watch_allocations();
+  for (int i = 0; i < kCases; ++i) {
+    Bytes bytes = original;
+    switch (i % 4) {
+      case 0:  // a bit or a few
+        for (std::size_t flips = 1 + below(8); flips > 0; --flips) {
+          bytes[below(bytes.size())] ^= static_cast<std::uint8_t>(1U << below(8));
+        }
+        break;
+      case 1:  // a bit behind the fingerprint, so that it gets further
+        bytes[8 + below(bytes.size() - 8)] ^= static_cast<std::uint8_t>(1U << below(8));
+        break;
+      case 2:  // four bytes that may be a length or the front of a number
+        put_int32(bytes, 8 + below(bytes.size() - 12), kNastyLengths[below(kNastyLengths.size())]);
+        break;
+      default:  // another size and a byte
+        bytes = resized(bytes, below(bytes.size() + 40));
+        if (!bytes.empty()) bytes[below(bytes.size())] = static_cast<std::uint8_t>(random());
+        break;
+    }
+    const Decoded<TypeParam> decoded = decode_checked<TypeParam>(bytes);
+    if (decoded.message) {
+      ++accepted;
+      ASSERT_EQ(encode(*decoded.message), bytes) << "case " << i;
+    } else {
+      ++refused;
+      ASSERT_NE(decoded.reason, "") << "case " << i;
+    }
+  }
+  EXPECT_EQ(accepted + refused, kCases);
+  EXPECT_GT(refused, kCases / 4);
+  EXPECT_GT(accepted, 0);  // a bit of utime may be anything
+  EXPECT_LE(largest_allocation(), 16 * (original.size() + 40) + 4096);
+  std::cout << kCases << " mutations: " << accepted << " accepted, " << refused << " refused\n";
+}
+
+TEST(Channels, HaveDistinctNamesAndFingerprints) {
+  std::set<std::string_view> names;
+  std::set<std::int64_t> fingerprints;
+  for_each_channel([&]<class Message>() {
+    names.insert(Channel<Message>::name);
+    fingerprints.insert(Message::getHash());
+  });
+  EXPECT_EQ(names.size(), 9U);
+  EXPECT_EQ(fingerprints.size(), 9U);
+}
+
+TEST(Decode, RefusesAStringThatEndsEarly) {
+  Bytes bytes = encode(example<arrival_t>());
+  *(bytes.end() - 5) = 0;
+  EXPECT_NE(reason_for<arrival_t>(bytes), "");
+}
+
+}  // namespace
+}  // namespace nextview

@@ -1,0 +1,162 @@
+#include "tests/lcmtypes/examples.h"
+
+#include <cmath>
+#include <limits>
+#include <string>
+
+namespace nextview {
+
+using namespace std::string_literals;
+
+template <>
+run_config_t example() {
+  run_config_t config{};
+  config.run = 7;
+  config.seed = 3;
+  config.unit_m = 1.0;
+  config.start_m[2] = 1.2;
+  config.columns = 4;
+  config.rows = 3;
+  config.horizontal_aperture_rad = 1.0;
+  config.vertical_aperture_rad = 0.7;
+  config.range_min_m = 0.05;
+  config.range_max_m = 30.0;
+  config.scan_duration_s = 1.0;
+  config.body_radius_m = 0.2;
+  for (int axis = 0; axis < 3; ++axis) {
+    config.workspace_min_m[axis] = -2.0;
+    config.workspace_max_m[axis] = 3.0;
+    config.window_size[axis] = 16;
+  }
+  config.lift_min_m = 0.3;
+  config.lift_max_m = 2.0;
+  config.base_speed_m_s = 0.5;
+  config.lift_speed_m_s = 0.2;
+  config.turn_speed_rad_s = 0.7;
+  config.voxel_size_m = 0.1;
+  config.max_views = 60;
+  config.max_attempts = 20;
+  config.quality_threshold = 0.8;
+  config.clearance_m = 0.4;
+  config.step_min_m = 0.3;
+  config.step_max_m = 1.5;
+  config.fitness_tolerance = 0.01;
+  config.max_evaluations = 70;
+  config.stop_window_views = 15;
+  config.stop_new_area_m2 = 0.1;
+  config.scene_name = "room"s;
+  config.scene_file = "room.obj"s;
+  config.scene_up = "z"s;
+  config.scene_digest = "0123456789abcdef0123456789abcdef"s;
+  config.program_version = "0.1"s;
+  return config;
+}
+
+template <>
+goal_t example() {
+  goal_t goal{};
+  goal.utime = 5;
+  goal.run = 7;
+  goal.view = 2;
+  goal.attempt = 1;
+  goal.position_m[0] = 1.0;
+  goal.waypoints = 2;
+  goal.waypoint_m = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}};
+  goal.fitness = 0.9;
+  goal.share_occupied = 0.5;
+  goal.share_unseen = 0.5;
+  return goal;
+}
+
+template <>
+search_t example() {
+  search_t search{};
+  search.run = 7;
+  search.view = 2;
+  search.attempt = 1;
+  search.tried = 2;
+  search.tried_position_m = {{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}};
+  search.tried_pan_rad = {0.0, 1.0};
+  search.tried_tilt_rad = {0.0, 0.5};
+  search.tried_fitness = {-1.0, 0.9};
+  search.tried_move = {0, 5};
+  return search;
+}
+
+template <>
+arrival_t example() {
+  arrival_t arrival{};
+  arrival.run = 7;
+  arrival.view = 2;
+  arrival.attempt = 1;
+  arrival.refusal = "the body would touch a surface"s;
+  return arrival;
+}
+
+template <>
+range_image_t example() {
+  range_image_t image{};
+  image.run = 7;
+  image.view = 2;
+  image.attempt = 1;
+  image.columns = 3;
+  image.rows = 2;
+  image.pixels = 6;
+  image.parts = 1;
+  for (int i = 0; i < 3; ++i) {
+    image.column_sin.push_back(std::sin(0.1 * i));
+    image.column_cos.push_back(std::cos(0.1 * i));
+    image.world_from_sensor[i][i] = 1.0;
+  }
+  image.row_sin = {0.0, 0.6};
+  image.row_cos = {1.0, 0.8};
+  image.range_min_m = 0.05;
+  image.range_max_m = 30.0;
+  image.range_m = {
+      1.0F, 2.0F, std::numeric_limits<float>::infinity(), std::numeric_limits<float>::quiet_NaN(),
+      5.0F, 30.0F};
+  return image;
+}
+
+template <>
+commit_t example() {
+  commit_t commit{};
+  commit.run = 7;
+  commit.view = 2;
+  commit.attempt = 1;
+  commit.occupied_voxels = 10;
+  commit.newly_occupied_voxels = 4;
+  commit.mean_quality = 0.7;
+  commit.min_quality = 0.1;
+  commit.map_digest = "0123456789abcdef0123456789abcdef"s;
+  return commit;
+}
+
+template <>
+stop_t example() {
+  stop_t stop{};
+  stop.run = 7;
+  stop.views = 2;
+  stop.stop_reason = "view_limit"s;
+  return stop;
+}
+
+template <>
+status_t example() {
+  status_t status{};
+  status.run = 7;
+  status.role = "mapper"s;
+  return status;
+}
+
+template <>
+request_t example() {
+  request_t request{};
+  request.run = 7;
+  request.view = 2;
+  request.wanted_channel = "NEXTVIEW_GOAL"s;
+  request.asker = "mapper"s;
+  return request;
+}
+
+}  // namespace nextview

@@ -1,0 +1,30 @@
+#pragma once
+
+#include "lcmtypes/channels.h"
+
+namespace nextview {
+
+/// A small valid message of every type.
+template <class Message>
+Message example();
+
+template <>
+run_config_t example();
+template <>
+goal_t example();
+template <>
+search_t example();
+template <>
+arrival_t example();
+template <>
+range_image_t example();
+template <>
+commit_t example();
+template <>
+stop_t example();
+template <>
+status_t example();
+template <>
+request_t example();
+
+}  // namespace nextview

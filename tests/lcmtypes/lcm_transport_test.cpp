@@ -1,0 +1,116 @@
+#include "lcmtypes/lcm_transport.h"
+
+#include <gtest/gtest.h>
+#include <sched.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <iostream>
+
+#include "lcmtypes/bus.h"
+#include "lcmtypes/multicast_probe.h"
+#include "tests/lcmtypes/examples.h"
+
+namespace nextview {
+namespace {
+
+using std::chrono::milliseconds;
+
+// A port of this test's own.
+std::string url() {
+  return "udpm://239.255.76.67:" + std::to_string(20000 + getpid() % 20000) + "?ttl=0";
+}
+
+TEST(LcmTransport, CarriesMessagesBetweenTwoBuses) {
+  const std::string place = url();
+  Bus planner(place, 7, "planner");
+  Bus mapper(place, 7, "mapper");
+  std::vector<goal_t> received;
+  mapper.on<goal_t>([&](const goal_t& goal) { received.push_back(goal); });
+  goal_t goal = example<goal_t>();
+  constexpr int kGoals = 500;  // well over the 30 that LCM's queues hold unless told otherwise
+  for (int view = 1; view <= kGoals; ++view) {
+    goal.view = view;
+    planner.publish(goal);
+  }
+  for (int asked = 0; asked < 100 && std::ssize(received) < kGoals; ++asked) {
+    while (mapper.handle(milliseconds(20))) {
+    }
+  }
+  ASSERT_EQ(std::ssize(received), kGoals);
+  for (int i = 0; i < kGoals; ++i) EXPECT_EQ(received[static_cast<std::size_t>(i)].view, i + 1);
+}
+
+TEST(LcmTransport, AnswersRequests) {
+  const std::string place = url();
+  Bus planner(place, 7, "planner");
+  Bus mapper(place, 7, "mapper");
+  planner.publish(example<goal_t>());  // before the mapper listens
+  int received = 0;
+  mapper.on<goal_t>([&](const goal_t&) { ++received; });
+  for (int asked = 0; asked < 100 && received == 0; ++asked) {
+    mapper.request<goal_t>(2, 0);
+    planner.handle(milliseconds(20));
+    mapper.handle(milliseconds(20));
+  }
+  EXPECT_EQ(received, 1);
+}
+
+TEST(LcmTransport, AHandlersExceptionPassesThroughLcm) {
+  const std::string place = url();
+  Bus planner(place, 7, "planner");
+  Bus mapper(place, 7, "mapper");
+  mapper.on<goal_t>([](const goal_t&) { throw std::runtime_error("a fault of our own"); });
+  planner.publish(example<goal_t>());
+  EXPECT_THROW(
+      {
+        for (int i = 0; i < 100; ++i) mapper.handle(milliseconds(20));
+      },
+      std::runtime_error);
+}
+
+std::string error_of(const std::string& lcm_url) {
+  try {
+    const Bus bus(lcm_url, 7, "mapper");
+    return "no error";
+  } catch (const BusError& error) {
+    return error.what();
+  }
+}
+
+TEST(LcmTransport, SaysWhatIsWrongWithAUrl) {
+  EXPECT_NE(error_of("udpm://239.255.76.67:many").find("'many' is not a port"), std::string::npos);
+  EXPECT_NE(error_of("udpm://239.255.76.67:70000").find("not a port"), std::string::npos);
+  EXPECT_NE(error_of("udpm://127.0.0.1:7667").find("not a multicast group"), std::string::npos);
+  EXPECT_NE(error_of("pigeon://here").find("pigeon://here"), std::string::npos);
+}
+
+// In a network of its own, whose loopback is down: no multicast route, as on a fresh container.
+TEST(LcmTransport, WithoutAMulticastRouteSaysWhatToType) {
+  int message[2];
+  ASSERT_EQ(pipe(message), 0);
+  const pid_t child = fork();
+  ASSERT_GE(child, 0);
+  if (child == 0) {
+    if (unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) _exit(2);
+    const std::string error = error_of(url());
+    _exit(write(message[1], error.data(), error.size()) > 0 ? 0 : 3);
+  }
+  close(message[1]);
+  std::string error;
+  char buffer[512];
+  for (ssize_t size; (size = read(message[0], buffer, sizeof buffer)) > 0;) {
+    error.append(buffer, static_cast<std::size_t>(size));
+  }
+  close(message[0]);
+  int status = 0;
+  ASSERT_EQ(waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFEXITED(status));
+  if (WEXITSTATUS(status) == 2) {
+    GTEST_SKIP() << "this user may not make a network namespace, so nothing was tested";
+  }
+  EXPECT_NE(error.find("ip route add 224.0.0.0/4 dev lo"), std::string::npos) << error;
+}
+
+}  // namespace
+}  // namespace nextview

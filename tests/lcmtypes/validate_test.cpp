@@ -1,0 +1,175 @@
+#include "lcmtypes/validate.h"
+
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "tests/lcmtypes/examples.h"
+
+namespace nextview {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr float kInfF = std::numeric_limits<float>::infinity();
+
+/// A change to a valid message that makes it impossible.
+template <class Message>
+struct Fault {
+  std::string name;
+  std::function<void(Message&)> apply;
+};
+
+template <class Message>
+void expect_all_refused(const std::vector<Fault<Message>>& faults) {
+  EXPECT_EQ(check(example<Message>()), "");
+  for (const Fault<Message>& fault : faults) {
+    Message message = example<Message>();
+    fault.apply(message);
+    EXPECT_NE(check(message), "") << fault.name;
+  }
+}
+
+TEST(Validate, Goal) {
+  expect_all_refused<goal_t>({
+      {"view 0", [](goal_t& m) { m.view = 0; }},
+      {"negative view", [](goal_t& m) { m.view = -3; }},
+      {"attempt 0", [](goal_t& m) { m.attempt = 0; }},
+      {"negative utime", [](goal_t& m) { m.utime = -1; }},
+      {"NaN position", [](goal_t& m) { m.position_m[1] = kNan; }},
+      {"infinite position", [](goal_t& m) { m.position_m[1] = -kInf; }},
+      {"NaN pan", [](goal_t& m) { m.pan_rad = kNan; }},
+      {"tilt beyond the vertical", [](goal_t& m) { m.tilt_rad = 1.6; }},
+      {"NaN waypoint", [](goal_t& m) { m.waypoint_m[1][2] = kNan; }},
+      {"no waypoint", [](goal_t& m) { m.waypoints = 0; }},
+      {"NaN fitness", [](goal_t& m) { m.fitness = kNan; }},
+      {"share above 1", [](goal_t& m) { m.share_unseen = 1.01; }},
+      {"negative share", [](goal_t& m) { m.share_open = -0.01; }},
+      {"negative iterations", [](goal_t& m) { m.iterations = -1; }},
+      {"NaN time", [](goal_t& m) { m.plan_wall_s = kNan; }},
+  });
+}
+
+TEST(Validate, Search) {
+  expect_all_refused<search_t>({
+      {"view 0", [](search_t& m) { m.view = 0; }},
+      {"NaN position", [](search_t& m) { m.tried_position_m[1][0] = kNan; }},
+      {"infinite fitness", [](search_t& m) { m.tried_fitness[0] = -kInf; }},
+      {"NaN pan", [](search_t& m) { m.tried_pan_rad[0] = kNan; }},
+      {"unknown move", [](search_t& m) { m.tried_move[0] = 6; }},
+      {"negative move", [](search_t& m) { m.tried_move[0] = -1; }},
+  });
+}
+
+TEST(Validate, Arrival) {
+  expect_all_refused<arrival_t>({
+      {"view 0", [](arrival_t& m) { m.view = 0; }},
+      {"both arrived and refused", [](arrival_t& m) { m.arrived = 1; }},
+      {"neither", [](arrival_t& m) { m.refusal.clear(); }},
+      {"a boolean of 2", [](arrival_t& m) { m.arrived = 2; }},
+      {"NaN position", [](arrival_t& m) { m.arrival_position_m[0] = kNan; }},
+      {"negative path", [](arrival_t& m) { m.path_length_m = -0.1; }},
+  });
+}
+
+TEST(Validate, RangeImage) {
+  expect_all_refused<range_image_t>({
+      {"view 0", [](range_image_t& m) { m.view = 0; }},
+      {"unknown geometry", [](range_image_t& m) { m.geometry = 1; }},
+      {"one column", [](range_image_t& m) { m.columns = 1; }},
+      {"rows without end", [](range_image_t& m) { m.rows = 1 << 20; }},
+      {"more pixels than the raster", [](range_image_t& m) { m.first_pixel = 1; }},
+      {"negative first pixel", [](range_image_t& m) { m.first_pixel = -1; }},
+      {"first pixel whose sum overflows",
+       [](range_image_t& m) { m.first_pixel = std::numeric_limits<std::int32_t>::max(); }},
+      {"no pixels", [](range_image_t& m) { m.pixels = 0; }},
+      {"fewer pixels than the raster in its only part", [](range_image_t& m) { m.pixels = 5; }},
+      {"part beyond parts", [](range_image_t& m) { m.part = 1; }},
+      {"negative part", [](range_image_t& m) { m.part = -1; }},
+      {"no parts", [](range_image_t& m) { m.parts = 0; }},
+      {"more parts than pixels", [](range_image_t& m) { m.parts = 7; }},
+      {"second part from the first pixel",
+       [](range_image_t& m) {
+         m.parts = 3;
+         m.part = 1;
+       }},
+      {"column off the unit circle", [](range_image_t& m) { m.column_sin[1] += 1e-6; }},
+      {"NaN row", [](range_image_t& m) { m.row_cos[0] = kNan; }},
+      {"limits the wrong way round", [](range_image_t& m) { m.range_min_m = 31.0; }},
+      {"negative limit", [](range_image_t& m) { m.range_min_m = -1.0; }},
+      {"infinite limit", [](range_image_t& m) { m.range_max_m = kInf; }},
+      {"NaN position", [](range_image_t& m) { m.position_m[0] = kNan; }},
+      {"rotation stretched", [](range_image_t& m) { m.world_from_sensor[0][0] = 1.0001; }},
+      {"rotation mirrored", [](range_image_t& m) { m.world_from_sensor[0][0] = -1.0; }},
+      {"rotation NaN", [](range_image_t& m) { m.world_from_sensor[2][1] = kNan; }},
+      {"negative range", [](range_image_t& m) { m.range_m[0] = -0.1F; }},
+      {"range of -inf", [](range_image_t& m) { m.range_m[0] = -kInfF; }},
+      {"range beyond the limit", [](range_image_t& m) { m.range_m[0] = 30.1F; }},
+  });
+}
+
+TEST(Validate, Commit) {
+  expect_all_refused<commit_t>({
+      {"view 0", [](commit_t& m) { m.view = 0; }},
+      {"negative count", [](commit_t& m) { m.empty_voxels = -1; }},
+      {"more new than all", [](commit_t& m) { m.newly_occupied_voxels = 11; }},
+      {"NaN area", [](commit_t& m) { m.occupied_area_m2 = kNan; }},
+      {"quality above 1", [](commit_t& m) { m.mean_quality = 1.1; }},
+      {"NaN quality", [](commit_t& m) { m.min_quality = kNan; }},
+      {"short digest", [](commit_t& m) { m.map_digest.pop_back(); }},
+      {"digest with another letter", [](commit_t& m) { m.map_digest[3] = 'g'; }},
+      {"NaN position", [](commit_t& m) { m.used_position_m[0] = kNan; }},
+  });
+}
+
+TEST(Validate, TheRest) {
+  expect_all_refused<stop_t>({
+      {"negative views", [](stop_t& m) { m.views = -1; }},
+      {"no reason", [](stop_t& m) { m.stop_reason.clear(); }},
+  });
+  expect_all_refused<status_t>({
+      {"negative counter", [](status_t& m) { m.dropped = -1; }},
+      {"a boolean of -1", [](status_t& m) { m.failed = -1; }},
+      {"no role", [](status_t& m) { m.role.clear(); }},
+  });
+  expect_all_refused<request_t>({
+      {"negative view", [](request_t& m) { m.view = -1; }},
+      {"negative attempt", [](request_t& m) { m.attempt = -1; }},
+      {"a channel nobody has", [](request_t& m) { m.wanted_channel = "NEXTVIEW_GOALS"; }},
+      {"no asker", [](request_t& m) { m.asker.clear(); }},
+  });
+}
+
+TEST(Validate, RunConfig) {
+  expect_all_refused<run_config_t>({
+      {"utime", [](run_config_t& m) { m.utime = 1; }},
+      {"negative unit", [](run_config_t& m) { m.unit_m = -1.0; }},
+      {"NaN start", [](run_config_t& m) { m.start_m[0] = kNan; }},
+      {"tilted over", [](run_config_t& m) { m.start_tilt_rad = 2.0; }},
+      {"no columns", [](run_config_t& m) { m.columns = 0; }},
+      {"huge rows", [](run_config_t& m) { m.rows = 1 << 20; }},
+      {"aperture of a half turn", [](run_config_t& m) { m.vertical_aperture_rad = 3.2; }},
+      {"limits the wrong way round", [](run_config_t& m) { m.range_max_m = 0.01; }},
+      {"negative noise", [](run_config_t& m) { m.range_noise_m = -1.0; }},
+      {"workspace inside out", [](run_config_t& m) { m.workspace_max_m[2] = -3.0; }},
+      {"lift inside out", [](run_config_t& m) { m.lift_max_m = 0.1; }},
+      {"no speed", [](run_config_t& m) { m.lift_speed_m_s = 0.0; }},
+      {"voxels of no size", [](run_config_t& m) { m.voxel_size_m = 0.0; }},
+      {"window of no size", [](run_config_t& m) { m.window_size[0] = 0; }},
+      {"no views", [](run_config_t& m) { m.max_views = 0; }},
+      {"no attempts", [](run_config_t& m) { m.max_attempts = 0; }},
+      {"threshold above 1", [](run_config_t& m) { m.quality_threshold = 1.5; }},
+      {"steps the wrong way round", [](run_config_t& m) { m.step_min_m = 2.0; }},
+      {"too few evaluations", [](run_config_t& m) { m.max_evaluations = 3; }},
+      {"more evaluations than a message holds", [](run_config_t& m) { m.max_evaluations = 2000; }},
+      {"up is down", [](run_config_t& m) { m.scene_up = "down"; }},
+      {"no file", [](run_config_t& m) { m.scene_file.clear(); }},
+      {"no digest", [](run_config_t& m) { m.scene_digest.clear(); }},
+  });
+}
+
+}  // namespace
+}  // namespace nextview
