@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 #include "sensor_sim/sensor_geometry.h"
@@ -21,7 +22,13 @@ struct RangeImage {
   std::vector<float> range_m;
 };
 
-/// Rounds a distance to the nearest 0.1 mm, as a real scanner's are; keeps +inf and NaN.
-float quantise_range(double range_m);
+/// Rounds a distance of 0 or more to the nearest 0.1 mm, as a real scanner's are; keeps +inf and
+/// NaN. Through an integer and not std::round, which is a call for every pixel.
+inline float quantise_range(double range_m) {
+  constexpr double kLongest = 1e12;
+  if (!(range_m < kLongest)) return static_cast<float>(range_m);
+  return static_cast<float>(static_cast<double>(static_cast<std::int64_t>(range_m * 1e4 + 0.5)) /
+                            1e4);
+}
 
 }  // namespace nextview
