@@ -67,7 +67,7 @@ void check_part(Checks& checks, const range_image_t& image) {
                  "pixels " + std::to_string(image.first_pixel) + " to " + std::to_string(end) +
                      " of " + std::to_string(all));
   checks.require((image.part == 0) == (image.first_pixel == 0) &&
-                     (image.part == image.parts - 1) == (end == all),
+                     (std::int64_t{image.part} + 1 == image.parts) == (end == all),
                  "first or last pixels in the wrong part");
 }
 

@@ -1,5 +1,7 @@
 #include <algorithm>
+#include <cstdint>
 #include <numbers>
+#include <string>
 
 #include "lcmtypes/validate.h"
 #include "lcmtypes/validate_checks.h"
@@ -23,7 +25,10 @@ void check_scene(Checks& checks, const run_config_t& config) {
 
 void check_sensor(Checks& checks, const run_config_t& config) {
   checks.within("columns", config.columns, 2, kMaxColumnsAndRows);
-  checks.within("rows", config.rows, 2, kMaxColumnsAndRows - config.columns);
+  checks.within("rows", config.rows, 2, kMaxColumnsAndRows);
+  checks.require(std::int64_t{config.columns} + config.rows <= kMaxColumnsAndRows,
+                 "raster of " + std::to_string(config.columns) + " x " +
+                     std::to_string(config.rows) + " is too large");
   checks.positive("horizontal_aperture_rad", config.horizontal_aperture_rad);
   checks.positive("vertical_aperture_rad", config.vertical_aperture_rad);
   checks.require(

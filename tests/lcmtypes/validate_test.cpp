@@ -151,6 +151,8 @@ TEST(Validate, RunConfig) {
       {"tilted over", [](run_config_t& m) { m.start_tilt_rad = 2.0; }},
       {"no columns", [](run_config_t& m) { m.columns = 0; }},
       {"huge rows", [](run_config_t& m) { m.rows = 1 << 20; }},
+      {"a raster whose ray table fills the messages",
+       [](run_config_t& m) { m.columns = m.rows = 1000; }},
       {"aperture of a half turn", [](run_config_t& m) { m.vertical_aperture_rad = 3.2; }},
       {"limits the wrong way round", [](run_config_t& m) { m.range_max_m = 0.01; }},
       {"negative noise", [](run_config_t& m) { m.range_noise_m = -1.0; }},
