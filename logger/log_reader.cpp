@@ -1,0 +1,55 @@
+#include "logger/log_reader.h"
+
+#include <lcm/eventlog.h>
+#include <sys/stat.h>
+
+#include <cstdio>
+#include <utility>
+
+namespace nextview {
+
+struct LogReader::File {
+  explicit File(const std::filesystem::path& path) : log(lcm_eventlog_create(path.c_str(), "r")) {
+    if (log == nullptr) throw LogError(path.string() + ": cannot be opened");
+  }
+  File(const File&) = delete;
+  File& operator=(const File&) = delete;
+  ~File() { lcm_eventlog_destroy(log); }
+
+  lcm_eventlog_t* log;
+  long end_of_last = 0;  // where the last whole message ends
+};
+
+LogReader::LogReader(const std::filesystem::path& file) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) {
+    throw LogError(file.string() + ": no such file");
+  }
+  file_ = std::make_unique<File>(file);
+}
+LogReader::~LogReader() = default;
+LogReader::LogReader(LogReader&&) noexcept = default;
+LogReader& LogReader::operator=(LogReader&&) noexcept = default;
+
+std::optional<LoggedMessage> LogReader::next() {
+  // A message only half written is read again from its beginning when the file has grown.
+  std::clearerr(file_->log->f);
+  if (std::fseek(file_->log->f, file_->end_of_last, SEEK_SET) != 0) return std::nullopt;
+  lcm_eventlog_event_t* event = lcm_eventlog_read_next_event(file_->log);
+  if (event == nullptr) return std::nullopt;
+  file_->end_of_last = std::ftell(file_->log->f);
+  LoggedMessage message;
+  message.channel = event->channel;
+  const auto* bytes = static_cast<const std::uint8_t*>(event->data);
+  message.bytes.assign(bytes, bytes + event->datalen);
+  lcm_eventlog_free_event(event);
+  return message;
+}
+
+std::int64_t LogReader::bytes_left() const {
+  struct stat status {};
+  if (::fstat(::fileno(file_->log->f), &status) != 0) return 0;
+  return status.st_size - file_->end_of_last;
+}
+
+}  // namespace nextview

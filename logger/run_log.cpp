@@ -1,0 +1,82 @@
+#include "logger/run_log.h"
+
+#include <xxhash.h>
+
+#include <algorithm>
+
+#include "lcmtypes/bus.h"
+#include "lcmtypes/decode.h"
+
+namespace nextview {
+
+RunLog::RunLog(const std::filesystem::path& file, std::optional<std::int64_t> run,
+               RangeImages range_images)
+    : reader_(file), run_(run), record_(range_images) {}
+
+void RunLog::read_on() {
+  while (auto message = reader_.next()) {
+    ++counters_.messages;
+    if (!run_ && message->channel != Channel<run_config_t>::name) {
+      before_config_.push_back(std::move(*message));
+      continue;
+    }
+    take(*message);
+    if (!run_ || before_config_.empty()) continue;
+    for (const LoggedMessage& earlier : std::exchange(before_config_, {})) take(earlier);
+  }
+}
+
+void RunLog::take(const LoggedMessage& message) {
+  bool ours = false;
+  for_each_channel([&]<class Message>() {
+    if (message.channel != Channel<Message>::name) return;
+    ours = true;
+    take_as<Message>(message);
+  });
+  // LCM_SELF_TEST, which every program on the bus starts with, is nobody's message.
+  if (!ours && message.channel != "LCM_SELF_TEST") ++counters_.strangers;
+}
+
+template <class Message>
+void RunLog::take_as(const LoggedMessage& message) {
+  const Decoded<Message> decoded = decode_checked<Message>(message.bytes);
+  if (!decoded.message) {
+    dropped_.push_back("a message on " + message.channel + " cannot be right: " + decoded.reason);
+    return;
+  }
+  if constexpr (std::is_same_v<Message, run_config_t>) {
+    if (!run_) run_ = decoded.message->run;
+    if (decoded.message->run != *run_ && std::find(other_runs_.begin(), other_runs_.end(),
+                                                   decoded.message->run) == other_runs_.end()) {
+      other_runs_.push_back(decoded.message->run);
+    }
+  }
+  if (decoded.message->run != *run_) {
+    ++counters_.strangers;
+    return;
+  }
+  ++counters_.ours;
+  if constexpr (Channel<Message>::answered) {
+    const MessageKey key = key_of(*decoded.message);
+    const XXH128_hash_t hash = XXH3_128bits(message.bytes.data(), message.bytes.size());
+    const auto [seen, is_new] =
+        seen_.emplace(std::pair(message.channel, key), Hash(hash.high64, hash.low64));
+    if (!is_new) {
+      ++counters_.duplicates;
+      if (seen->second != Hash(hash.high64, hash.low64)) {
+        contradictions_.push_back(
+            describe(MissingMessage{Channel<Message>::name, key.view, key.attempt}) +
+            " is there twice, and the two differ");
+      }
+      return;
+    }
+    try {
+      record_.add(*decoded.message);
+    } catch (const RejectedMessage& rejected) {
+      dropped_.push_back(describe(MissingMessage{Channel<Message>::name, key.view, key.attempt}) +
+                         " does not fit the rest: " + rejected.what());
+    }
+  }
+}
+
+}  // namespace nextview

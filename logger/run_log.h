@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "lcmtypes/channels.h"
+#include "logger/log_reader.h"
+#include "logger/run_record.h"
+
+namespace nextview {
+
+/// What was found in a log.
+struct LogCounters {
+  std::int64_t messages = 0;    ///< in all
+  std::int64_t ours = 0;        ///< of the run
+  std::int64_t strangers = 0;   ///< of other runs, or on channels that are not ours
+  std::int64_t duplicates = 0;  ///< the same again, which is how lost messages are made good
+};
+
+/// Reads the messages of one run out of its log, through the same decode-and-validate path as the
+/// processes on the bus.
+class RunLog {
+ public:
+  /// @param run only messages of this run are taken; nothing: of the first one with a configuration
+  /// @throws LogError when the file cannot be opened
+  RunLog(const std::filesystem::path& file, std::optional<std::int64_t> run,
+         RangeImages range_images);
+
+  /// Takes in what has been written since the last call.
+  void read_on();
+
+  const RunRecord& record() const { return record_; }
+  RunRecord& record() { return record_; }
+  const LogCounters& counters() const { return counters_; }
+  /// The other runs whose configurations are in the log.
+  const std::vector<std::int64_t>& other_runs() const { return other_runs_; }
+  /// Messages that cannot be right and were left out, as everybody on the bus does, one line each.
+  const std::vector<std::string>& dropped() const { return dropped_; }
+  /// Messages that are there twice but differ, one line each.
+  const std::vector<std::string>& contradictions() const { return contradictions_; }
+  /// Bytes at the end that are no whole message.
+  std::int64_t bytes_left() const { return reader_.bytes_left(); }
+
+ private:
+  /// 128-bit hash of a message's bytes.
+  using Hash = std::pair<std::uint64_t, std::uint64_t>;
+
+  void take(const LoggedMessage& message);
+  template <class Message>
+  void take_as(const LoggedMessage& message);
+
+  LogReader reader_;
+  std::optional<std::int64_t> run_;
+  RunRecord record_;
+  LogCounters counters_;
+  std::vector<std::int64_t> other_runs_;
+  std::vector<std::string> dropped_;
+  std::vector<std::string> contradictions_;
+  std::map<std::pair<std::string, MessageKey>, Hash> seen_;
+  std::vector<LoggedMessage> before_config_;  // while the run is not known
+};
+
+}  // namespace nextview

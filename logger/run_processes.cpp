@@ -1,0 +1,83 @@
+#include "logger/run_processes.h"
+
+#include <signal.h>
+
+#include <system_error>
+
+#include "logger/run_setup.h"
+
+namespace nextview {
+namespace {
+
+constexpr double kPatience_s = 5.0;
+
+}  // namespace
+
+const std::vector<std::string>& RunProcesses::roles() {
+  static const std::vector<std::string> all = {"planner", "base_sim", "sensor_sim", "mapper"};
+  return all;
+}
+
+RunProcesses::RunProcesses(const std::string& lcm_url, std::int64_t run,
+                           const std::filesystem::path& log) {
+  const auto recorder = find_in_path("lcm-logger");
+  if (!recorder) {
+    throw SetupError("lcm-logger is not in PATH: type apt-get install liblcm-bin");
+  }
+  const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  try {
+    // Written out with every message that comes a millisecond after the one before: what is read
+    // back at the end must be there.
+    children_.emplace_back("lcm-logger",
+                           std::vector<std::string>{*recorder, "--quiet", "--flush-interval=1",
+                                                    "--lcm-url=" + lcm_url, log.string()},
+                           AtParentsDeath::Terminate);
+    for (const std::string& role : roles()) {
+      children_.emplace_back(
+          role,
+          std::vector<std::string>{(folder / ("nextview_" + role)).string(), "--lcm-url=" + lcm_url,
+                                   "--run=" + std::to_string(run)},
+          AtParentsDeath::Kill);
+    }
+  } catch (const std::system_error& error) {
+    throw SetupError(std::string(error.what()) + ": build nextview again");
+  }
+}
+
+std::optional<std::string> RunProcesses::casualty() {
+  for (ChildProcess& child : children_) {
+    if (child.running()) continue;
+    std::string text = child.role() + " " + child.how_it_ended();
+    for (const std::string& line : child.last_lines()) text += "\n  " + line;
+    return text;
+  }
+  return std::nullopt;
+}
+
+std::vector<std::string> RunProcesses::take_lines() {
+  std::vector<std::string> lines;
+  for (ChildProcess& child : children_) {
+    for (const std::string& line : child.take_lines()) lines.push_back(child.role() + ": " + line);
+  }
+  return lines;
+}
+
+void RunProcesses::end_planner() {
+  for (ChildProcess& child : children_) {
+    if (child.role() == "planner") child.terminate(kPatience_s);
+  }
+}
+
+void RunProcesses::end_all() {
+  for (std::size_t i = 1; i < children_.size(); ++i) children_[i].signal(SIGTERM);
+  for (std::size_t i = 1; i < children_.size(); ++i) children_[i].terminate(kPatience_s);
+  children_[0].terminate(kPatience_s);
+}
+
+std::map<std::string, std::int64_t> RunProcesses::peak_memory_bytes() const {
+  std::map<std::string, std::int64_t> bytes;
+  for (const ChildProcess& child : children_) bytes[child.role()] = child.peak_memory_bytes();
+  return bytes;
+}
+
+}  // namespace nextview

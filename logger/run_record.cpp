@@ -1,0 +1,158 @@
+#include "logger/run_record.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "planner/termination.h"
+
+namespace nextview {
+namespace {
+
+template <class Map, class Key>
+const typename Map::mapped_type* find_in(const Map& map, const Key& key) {
+  const auto found = map.find(key);
+  return found == map.end() ? nullptr : &found->second;
+}
+
+template <class Message>
+MissingMessage missing_message(int view, int attempt) {
+  return {Channel<Message>::name, view, attempt};
+}
+
+}  // namespace
+
+std::string describe(const MissingMessage& missing) {
+  std::string text(missing.channel);
+  if (missing.view > 0) text += " of view " + std::to_string(missing.view);
+  if (missing.attempt > 0) text += ", attempt " + std::to_string(missing.attempt);
+  return text;
+}
+
+void RunRecord::check_fits(int view, int attempt) const {
+  if (!config_) throw RejectedMessage("it came before the run's configuration");
+  if (view > config_->max_views || attempt > config_->max_attempts) {
+    throw RejectedMessage("view " + std::to_string(view) + ", attempt " + std::to_string(attempt) +
+                          " of a run of " + std::to_string(config_->max_views) + " views, " +
+                          std::to_string(config_->max_attempts) + " attempts each");
+  }
+}
+
+void RunRecord::add(const goal_t& goal) {
+  check_fits(goal.view, goal.attempt);
+  goals_.emplace(key_of(goal), goal);
+}
+
+void RunRecord::add(const search_t& search) {
+  check_fits(search.view, search.attempt);
+  searches_.emplace(key_of(search), search);
+}
+
+void RunRecord::add(const arrival_t& arrival) {
+  check_fits(arrival.view, arrival.attempt);
+  arrivals_.emplace(key_of(arrival), arrival);
+}
+
+void RunRecord::add(const commit_t& commit) {
+  check_fits(commit.view, commit.attempt);
+  commits_.emplace(commit.view, commit);
+}
+
+void RunRecord::add(const stop_t& stop) {
+  check_fits(stop.views, stop.final_attempt);
+  stop_ = stop;
+}
+
+void RunRecord::add(const range_image_t& part) {
+  check_fits(part.view, part.attempt);
+  const MessageKey key{part.view, part.attempt, 0};
+  if (whole_images_.contains(key)) return;
+  scan_wall_s_.emplace(key, part.scan_wall_s);
+  auto image = assembler_.add(part);
+  if (!image) return;
+  whole_images_.insert(key);
+  if (range_images_ == RangeImages::Keep) {
+    images_.emplace(key, RecordedRangeImage{std::move(*image), scan_wall_s_.at(key)});
+  }
+}
+
+const goal_t* RunRecord::goal(int view, int attempt) const {
+  return find_in(goals_, MessageKey{view, attempt, 0});
+}
+const search_t* RunRecord::search(int view, int attempt) const {
+  return find_in(searches_, MessageKey{view, attempt, 0});
+}
+const arrival_t* RunRecord::arrival(int view, int attempt) const {
+  return find_in(arrivals_, MessageKey{view, attempt, 0});
+}
+const commit_t* RunRecord::commit(int view) const { return find_in(commits_, view); }
+const RecordedRangeImage* RunRecord::range_image(int view, int attempt) const {
+  return find_in(images_, MessageKey{view, attempt, 0});
+}
+
+void RunRecord::forget_range_image(int view, int attempt) { images_.erase({view, attempt, 0}); }
+
+int RunRecord::latest_view() const {
+  int latest = commits_.empty() ? 0 : commits_.rbegin()->first;
+  for (const auto* by_key : {&whole_images_}) {
+    if (!by_key->empty()) latest = std::max(latest, by_key->rbegin()->view);
+  }
+  if (!goals_.empty()) latest = std::max(latest, goals_.rbegin()->first.view);
+  if (!arrivals_.empty()) latest = std::max(latest, arrivals_.rbegin()->first.view);
+  return latest;
+}
+
+bool RunRecord::ends_without_goal() const {
+  return stop_ && stop_->stop_reason == to_string(StopReason::NoFeasibleGoal);
+}
+
+void RunRecord::add_missing_attempt(int view, int attempt,
+                                    std::vector<MissingMessage>& missing) const {
+  const bool has_search = view > 1;  // view 1 is the scan at the start, nothing was searched for
+  if (!goal(view, attempt)) missing.push_back(missing_message<goal_t>(view, attempt));
+  if (has_search && !search(view, attempt)) {
+    missing.push_back(missing_message<search_t>(view, attempt));
+  }
+  if (!arrival(view, attempt)) missing.push_back(missing_message<arrival_t>(view, attempt));
+}
+
+std::vector<MissingMessage> RunRecord::missing_of_view(int view) const {
+  const commit_t* committed = commit(view);
+  // Only the commit says which attempt was the last.
+  if (!committed) return {missing_message<commit_t>(view, 0)};
+  std::vector<MissingMessage> missing;
+  for (int attempt = 1; attempt <= committed->attempt; ++attempt) {
+    add_missing_attempt(view, attempt, missing);
+  }
+  if (!whole_images_.contains({view, committed->attempt, 0})) {
+    missing.push_back(missing_message<range_image_t>(view, committed->attempt));
+  }
+  return missing;
+}
+
+std::vector<MissingMessage> RunRecord::missing() const {
+  std::vector<MissingMessage> missing;
+  if (!config_) missing.push_back(missing_message<run_config_t>(0, 0));
+  if (!stop_) missing.push_back(missing_message<stop_t>(0, 0));
+  const int views = stop_ ? stop_->views : latest_view();
+  for (int view = 1; view <= views; ++view) {
+    const auto of_view = missing_of_view(view);
+    missing.insert(missing.end(), of_view.begin(), of_view.end());
+  }
+  if (ends_without_goal()) {
+    // The last attempt has a goal only if one was found and then refused.
+    const int view = stop_->views + 1;
+    for (int attempt = 1; attempt <= stop_->final_attempt; ++attempt) {
+      if (attempt == stop_->final_attempt && !goal(view, attempt)) continue;
+      add_missing_attempt(view, attempt, missing);
+    }
+  }
+  return missing;
+}
+
+int RunRecord::complete_views() const {
+  int views = 0;
+  while (missing_of_view(views + 1).empty()) ++views;
+  return views;
+}
+
+}  // namespace nextview

@@ -1,0 +1,96 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <set>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "lcmtypes/channels.h"
+#include "sensor_sim/range_image_message.h"
+
+namespace nextview {
+
+/// A message somebody should publish again: a channel, and the key by which it is asked for.
+struct MissingMessage {
+  std::string_view channel;
+  int view = 0;
+  int attempt = 0;
+  bool operator==(const MissingMessage&) const = default;
+};
+
+/// "NEXTVIEW_GOAL of view 3, attempt 1".
+std::string describe(const MissingMessage& missing);
+
+/// What is to be done with range images once they are whole.
+enum class RangeImages { Keep, OnlyCount };
+
+/// A range image of a run, and the wall-clock time the scan took.
+struct RecordedRangeImage {
+  ReceivedRangeImage received;
+  double scan_wall_s = 0.0;
+};
+
+/// The messages of one run by their keys, whether they come from the bus or out of a log, and what
+/// is missing among them. Each message is added once, the configuration first.
+///
+/// add() throws RejectedMessage for a view or attempt that the run cannot have, and for a part of a
+/// range image that contradicts the parts before it.
+class RunRecord {
+ public:
+  explicit RunRecord(RangeImages range_images) : range_images_(range_images) {}
+
+  void add(const run_config_t& config) { config_ = config; }
+  void add(const goal_t& goal);
+  void add(const search_t& search);
+  void add(const arrival_t& arrival);
+  void add(const range_image_t& part);
+  void add(const commit_t& commit);
+  void add(const stop_t& stop);
+
+  const std::optional<run_config_t>& config() const { return config_; }
+  const std::optional<stop_t>& stop() const { return stop_; }
+  const goal_t* goal(int view, int attempt) const;
+  const search_t* search(int view, int attempt) const;
+  const arrival_t* arrival(int view, int attempt) const;
+  const commit_t* commit(int view) const;
+  /// nullptr until all parts are there, or when images are only counted.
+  const RecordedRangeImage* range_image(int view, int attempt) const;
+  const std::map<MessageKey, arrival_t>& arrivals() const { return arrivals_; }
+  const std::map<int, commit_t>& commits() const { return commits_; }
+  /// Frees a range image that is needed no more; it still counts as there.
+  void forget_range_image(int view, int attempt);
+
+  /// The latest view anything is known of; 0 before the first goal.
+  int latest_view() const;
+  /// Whether the planner has ended in the middle of a view's attempts; see stop_t::final_attempt.
+  bool ends_without_goal() const;
+
+  /// What a committed view needs and is not there: its commit, else for each attempt its goal,
+  /// search and arrival, and the range image.
+  std::vector<MissingMessage> missing_of_view(int view) const;
+  /// What a whole run needs and is not there. Before the stop: only what the views so far need.
+  std::vector<MissingMessage> missing() const;
+  /// How many views, from the first, lack nothing.
+  int complete_views() const;
+
+ private:
+  void check_fits(int view, int attempt) const;
+  void add_missing_attempt(int view, int attempt, std::vector<MissingMessage>& missing) const;
+
+  RangeImages range_images_;
+  std::optional<run_config_t> config_;
+  std::optional<stop_t> stop_;
+  std::map<MessageKey, goal_t> goals_;  // by view and attempt, as are the next two
+  std::map<MessageKey, search_t> searches_;
+  std::map<MessageKey, arrival_t> arrivals_;
+  std::map<int, commit_t> commits_;
+  RangeImageAssembler assembler_;
+  std::map<MessageKey, double> scan_wall_s_;
+  std::set<MessageKey> whole_images_;
+  std::map<MessageKey, RecordedRangeImage> images_;
+};
+
+}  // namespace nextview
