@@ -1,0 +1,183 @@
+// One next best view, decided on the maps a run has after 3, 10 and 30 views, and over whole runs.
+
+#include <benchmark/benchmark.h>
+
+#include <algorithm>
+#include <memory>
+
+#include "bench/bench_groups.h"
+#include "bench/exploration.h"
+#include "bench/recovered_room.h"
+#include "bench/textbook_ray_walk.h"
+#include "planner/fast_view_predictor.h"
+#include "planner/orientations.h"
+#include "planner/panorama_view_predictor.h"
+
+namespace nextview {
+
+namespace {
+
+// A run at one moment: its map after so many views, and where the sensor stands.
+struct Moment {
+  std::string name;  // boxes/10cm/view_30
+  double voxel_size_m;
+  int view;
+  SensorPose present;  // where the last view was taken from
+  std::unique_ptr<MapBuilder> builder;
+};
+
+// What a run did, to do it again without scanning.
+struct RecordedRun {
+  std::vector<RangeImage> images;
+  MapWindow window;
+};
+
+PredictionRaster paper_raster() {
+  return prediction_raster(TiltedLineScan::paper(), RangeLimits());
+}
+
+std::shared_ptr<ViewPredictor> fast_predictor(double voxel_size_m, bool quality, int threads) {
+  return std::make_shared<FastViewPredictor>(paper_raster(), voxel_size_m,
+                                             icosahedron_orientations(), quality, threads);
+}
+
+std::optional<Decision> decide(const Moment& moment, ViewPredictor& predictor) {
+  PlannerParameters parameters;
+  parameters.use_quality = predictor.counts_quality();
+  return decide_next_view(moment.builder->map(), predictor, parameters, moment.present, 1,
+                          moment.view + 1, 1, {});
+}
+
+RecordedRun record_run(const BenchScene& scene, double voxel_size_m, int views) {
+  ExplorationParameters parameters;
+  parameters.voxel_size_m = voxel_size_m;
+  parameters.sensor = sensor_for(voxel_size_m);
+  Exploration exploration(scene, parameters);
+  const auto predictor = fast_predictor(voxel_size_m, false, 1);
+  RecordedRun run;
+  for (int view = 1; view <= views; ++view) {
+    exploration.step(*predictor);
+    run.images.push_back(exploration.image());
+  }
+  run.window = exploration.builder().map().window();
+  return run;
+}
+
+std::shared_ptr<Moment> moment_after(const RecordedRun& run, const std::string& scene,
+                                     double voxel_size_m, int views) {
+  auto moment = std::make_shared<Moment>();
+  moment->name = scene + "/" + size_name(voxel_size_m) + "/view_" + std::to_string(views);
+  moment->voxel_size_m = voxel_size_m;
+  moment->view = views;
+  moment->builder = std::make_unique<MapBuilder>(VoxelGrid{voxel_size_m}, run.window);
+  for (int view = 0; view < views; ++view) {
+    moment->builder->fold(run.images[static_cast<std::size_t>(view)]);
+  }
+  moment->present = run.images[static_cast<std::size_t>(views) - 1].pose;
+  return moment;
+}
+
+void register_decider(const std::string& name, const std::shared_ptr<Moment>& moment,
+                      const std::shared_ptr<ViewPredictor>& predictor) {
+  benchmark::RegisterBenchmark(("decision/" + name + "/" + moment->name).c_str(),
+                               [moment, predictor](benchmark::State& state) {
+                                 int evaluations = 0;
+                                 for (auto _ : state) {
+                                   const auto decision = decide(*moment, *predictor);
+                                   evaluations = decision ? decision->evaluations : 0;
+                                 }
+                                 state.SetItemsProcessed(state.iterations());
+                                 state.counters["positions_tried"] = evaluations;
+                               })
+      ->UseRealTime()
+      ->Unit(benchmark::kMillisecond);
+}
+
+// All views of a run again, each with its fold (not timed), field update and decision (timed).
+void register_run(const std::string& name, const std::string& scene, double voxel_size_m,
+                  const std::shared_ptr<RecordedRun>& run, bool quality, int threads) {
+  benchmark::RegisterBenchmark(
+      ("decision/" + name + "/" + scene + "/" + size_name(voxel_size_m) + "/all_views").c_str(),
+      [=](benchmark::State& state) {
+        std::vector<double> decision_s;
+        for (auto _ : state) {
+          MapBuilder builder({voxel_size_m}, run->window);
+          const auto predictor = fast_predictor(voxel_size_m, quality, threads);
+          PlannerParameters parameters;
+          parameters.use_quality = quality;
+          double sum_s = 0.0;
+          for (std::size_t i = 0; i < run->images.size(); ++i) {
+            const FoldReport& report = builder.fold(run->images[i]);
+            const auto start = std::chrono::steady_clock::now();
+            predictor->map_changed(builder.map(), report.changed_slots, report.updated_surfaces);
+            benchmark::DoNotOptimize(decide_next_view(builder.map(), *predictor, parameters,
+                                                      run->images[i].pose, 1,
+                                                      static_cast<int>(i) + 2, 1, {}));
+            decision_s.push_back(
+                std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+            sum_s += decision_s.back();
+          }
+          state.SetIterationTime(sum_s);
+        }
+        state.SetItemsProcessed(state.iterations() * static_cast<std::int64_t>(run->images.size()));
+        std::sort(decision_s.begin(), decision_s.end());
+        state.counters["median_ms"] = 1e3 * decision_s[decision_s.size() / 2];
+        state.counters["worst_ms"] = 1e3 * decision_s.back();
+      })
+      ->UseManualTime()
+      ->Unit(benchmark::kMillisecond);
+}
+
+bool same_decision(const std::optional<Decision>& a, const std::optional<Decision>& b) {
+  if (!a || !b) return !a && !b;
+  return a->pose.position_m == b->pose.position_m && a->pose.pan_rad == b->pose.pan_rad &&
+         a->pose.tilt_rad == b->pose.tilt_rad && a->fitness.value == b->fitness.value &&
+         a->evaluations == b->evaluations;
+}
+
+void register_moment(const std::shared_ptr<Moment>& moment, Agreement& with_plain) {
+  const double voxel_size_m = moment->voxel_size_m;
+  for (const bool quality : {false, true}) {
+    const auto one = fast_predictor(voxel_size_m, quality, 1);
+    const auto two = fast_predictor(voxel_size_m, quality, 2);
+    PlainViewPredictor plain(paper_raster(), voxel_size_m, icosahedron_orientations(), quality);
+    const auto decision = decide(*moment, plain);
+    with_plain.compare(same_decision(decide(*moment, *one), decision));
+    with_plain.compare(same_decision(decide(*moment, *two), decision));
+    const std::string suffix = quality ? "_quality" : "";
+    register_decider("nextview" + suffix, moment, one);
+    register_decider("nextview" + suffix + "_2_threads", moment, two);
+  }
+  static std::vector<std::shared_ptr<TextbookCaster>> kept;
+  kept.push_back(std::make_shared<TextbookCaster>(moment->builder->map(),
+                                                  prediction_reach(paper_raster(), voxel_size_m)));
+  register_decider("textbook", moment,
+                   std::make_shared<CastingViewPredictor<TextbookCaster>>(
+                       *kept.back(), paper_raster(), icosahedron_orientations()));
+  register_decider("nextview_panorama_1280", moment,
+                   std::make_shared<PanoramaViewPredictor>(paper_raster(), voxel_size_m,
+                                                           icosahedron_orientations(3)));
+}
+
+}  // namespace
+
+void register_decision(const BenchOptions& options) {
+  const int views = options.quick ? 30 : 60;
+  for (const std::string name : {"boxes", "columns"}) {
+    const BenchScene scene = load_bench_scene(name);
+    for (const double voxel_size_m : {0.10, 0.05}) {
+      const auto run = std::make_shared<RecordedRun>(record_run(scene, voxel_size_m, views));
+      Agreement with_plain("decision/" + name + "/" + size_name(voxel_size_m) +
+                           " nextview = plain");
+      for (const int after : {3, 10, 30}) {
+        register_moment(moment_after(*run, name, voxel_size_m, after), with_plain);
+      }
+      with_plain.report_and_require_none("decisions");
+      register_run("nextview", name, voxel_size_m, run, false, 1);
+      register_run("nextview_2_threads", name, voxel_size_m, run, false, 2);
+      register_run("nextview_quality", name, voxel_size_m, run, true, 1);
+    }
+  }
+}
+
+}  // namespace nextview

@@ -1,0 +1,65 @@
+#include "bench/exploration.h"
+
+#include <chrono>
+#include <numbers>
+
+#include "sensor_sim/scan.h"
+
+namespace nextview {
+
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+// Runs something and says how long it took.
+template <class F>
+double timed_s(F&& f) {
+  const auto start = Clock::now();
+  f();
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+}  // namespace
+
+TiltedLineScan sensor_for(double voxel_size_m) {
+  if (voxel_size_m >= 0.10) return TiltedLineScan::paper();
+  constexpr double kAperture_rad = std::numbers::pi / 3.0;
+  return voxel_size_m >= 0.05 ? TiltedLineScan::with_aperture(128, 60, kAperture_rad)
+                              : TiltedLineScan::with_aperture(320, 150, kAperture_rad);
+}
+
+Exploration::Exploration(const BenchScene& scene, const ExplorationParameters& parameters)
+    : scene_(scene),
+      parameters_(parameters),
+      rays_(make_ray_table(parameters.sensor)),
+      builder_({parameters.voxel_size_m},
+               window_around(scene.scene.mesh(), parameters.voxel_size_m)),
+      pose_(scene.start) {}
+
+ViewCost Exploration::step(ViewPredictor& predictor) {
+  ViewCost cost;
+  cost.view = ++view_;
+  RandomStream no_noise(parameters_.seed, view_, 1, RandomPurpose::RangeNoise);
+  image_ = scan(scene_.scene, rays_, RangeLimits(), pose_, 0.0, no_noise);
+  const FoldReport* report = nullptr;
+  cost.fold_s = timed_s([&] { report = &builder_.fold(image_); });
+  cost.digest_s = timed_s([&] { builder_.digest(); });
+  const VoxelMap& map = builder_.map();
+  cost.field_s =
+      timed_s([&] { predictor.map_changed(map, report->changed_slots, report->updated_surfaces); });
+  std::optional<Decision> decision;
+  cost.decision_s = timed_s([&] {
+    decision = decide_next_view(map, predictor, parameters_.planner, pose_, parameters_.seed,
+                                view_ + 1, 1, {});
+  });
+  cost.moved = decision.has_value();
+  if (decision) {
+    cost.evaluations = decision->evaluations;
+    pose_ = decision->pose;
+  } else {
+    pose_.pan_rad += 0.7;  // look elsewhere
+  }
+  return cost;
+}
+
+}  // namespace nextview

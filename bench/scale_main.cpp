@@ -1,0 +1,103 @@
+// How the cost of a view grows with what has been explored: real models explored in one process.
+//
+// nextview_bench_scale SCENE VOXEL_SIZE_M VIEWS
+
+#include <algorithm>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <vector>
+
+#include "bench/exploration.h"
+#include "planner/fast_view_predictor.h"
+#include "planner/free_space_field.h"
+#include "planner/orientations.h"
+#include "sensor_sim/mesh_file.h"
+
+namespace nextview {
+
+namespace {
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+double worst(const std::vector<double>& values) {
+  return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());
+}
+
+// The costs of the views since the last row.
+struct Row {
+  std::vector<double> fold_ms;
+  std::vector<double> digest_ms;
+  std::vector<double> field_ms;
+  std::vector<double> decision_ms;
+  std::vector<double> evaluations;
+};
+
+void print_row(const Row& row, Exploration& exploration, double voxel_size_m) {
+  const MapStatistics statistics = exploration.builder().statistics();
+  const auto voxels = [&](Label label) {
+    return static_cast<double>(statistics.voxels[static_cast<std::size_t>(label)]);
+  };
+  const double seen = voxels(Label::Empty) + voxels(Label::Occupied);
+  const double map_bytes = static_cast<double>(exploration.builder().memory_bytes());
+  const double field_bytes =
+      static_cast<double>(FreeSpaceField(exploration.builder().map()).memory_bytes());
+  std::printf("%6d %9.1f %8.2f %8.2f %8.2f %9.2f %9.2f %6.0f %8.1f %8.1f %8.2f\n",
+              exploration.views(), seen * voxel_size_m * voxel_size_m * voxel_size_m,
+              median(row.fold_ms), median(row.digest_ms), median(row.field_ms),
+              median(row.decision_ms), worst(row.decision_ms), median(row.evaluations),
+              map_bytes / 1e6, field_bytes / 1e6, (map_bytes + field_bytes) / seen);
+  std::fflush(stdout);
+}
+
+int explore(const std::string& name, double voxel_size_m, int views) {
+  const BenchScene scene = load_bench_scene(name);
+  ExplorationParameters parameters;
+  parameters.voxel_size_m = voxel_size_m;
+  parameters.sensor = sensor_for(std::min(voxel_size_m, 0.02));
+  parameters.planner.step_max_m = 3.0;  // larger strides: the point is to see much
+  FastViewPredictor predictor(prediction_raster(TiltedLineScan::paper(), RangeLimits()),
+                              voxel_size_m, icosahedron_orientations(), false);
+  Exploration exploration(scene, parameters);
+  const VoxelIndex size = exploration.builder().map().window().size;
+  std::printf("\n%s, %s voxels, window %d x %d x %d, sensor %d x %d, quality off\n", name.c_str(),
+              size_name(voxel_size_m).c_str(), size[0], size[1], size[2], parameters.sensor.columns,
+              parameters.sensor.rows);
+  std::printf("%6s %9s %8s %8s %8s %9s %9s %6s %8s %8s %8s\n", "view", "seen m3", "fold ms",
+              "digest", "field", "decision", "worst", "tried", "map MB", "field MB", "B/voxel");
+  Row row;
+  for (int view = 1; view <= views; ++view) {
+    const ViewCost cost = exploration.step(predictor);
+    row.fold_ms.push_back(1e3 * cost.fold_s);
+    row.digest_ms.push_back(1e3 * cost.digest_s);
+    row.field_ms.push_back(1e3 * cost.field_s);
+    row.decision_ms.push_back(1e3 * cost.decision_s);
+    row.evaluations.push_back(cost.evaluations);
+    if (view % std::max(1, views / 10) == 0) {
+      print_row(row, exploration, voxel_size_m);
+      row = Row();
+    }
+  }
+  return EXIT_SUCCESS;
+}
+
+}  // namespace
+
+}  // namespace nextview
+
+int main(int argc, char** argv) {
+  if (argc != 4) {
+    std::cerr << "usage: nextview_bench_scale SCENE VOXEL_SIZE_M VIEWS\n";
+    return 2;
+  }
+  try {
+    return nextview::explore(argv[1], std::atof(argv[2]), std::atoi(argv[3]));
+  } catch (const nextview::SceneError& error) {
+    std::cout << "skipped: " << error.what() << "\n";
+    return EXIT_SUCCESS;
+  }
+}

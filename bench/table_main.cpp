@@ -1,0 +1,235 @@
+// Reads the JSON of nextview_bench and prints it for people: conditions, what differs, figures with
+// ratios, and where they stand against what was asked for.
+
+#include <algorithm>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+// All repetitions of one benchmark.
+struct Figure {
+  std::vector<double> items_per_second;
+  std::vector<double> time_ms;
+  std::map<std::string, std::vector<double>> counters;
+};
+using Figures = std::map<std::string, Figure>;  // by name, options of the library cut off
+
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+// Half of the repetitions' whole range, as a share of the median.
+double spread(const std::vector<double>& values) {
+  const auto [low, high] = std::minmax_element(values.begin(), values.end());
+  return 0.5 * (*high - *low) / median(values);
+}
+
+double milliseconds(double value, const std::string& unit) {
+  return unit == "s"    ? 1e3 * value
+         : unit == "us" ? 1e-3 * value
+         : unit == "ns" ? 1e-6 * value
+                        : value;
+}
+
+std::string without_options(std::string name) {
+  for (const char* option : {"/real_time", "/manual_time", "/iterations:", "/repeats:"}) {
+    const std::size_t at = name.find(option);
+    if (at != std::string::npos) name.erase(at);
+  }
+  return name;
+}
+
+Figures read_figures(const Json& json, std::vector<std::string>& order,
+                     std::vector<std::string>& failed) {
+  // What Google Benchmark itself writes for every repetition; the rest are counters.
+  const std::vector<std::string> kOwn = {"family_index",    "per_family_instance_index",
+                                         "repetitions",     "repetition_index",
+                                         "threads",         "iterations",
+                                         "real_time",       "cpu_time",
+                                         "items_per_second"};
+  Figures figures;
+  for (const Json& run : json.at("benchmarks")) {
+    if (run.at("run_type") != "iteration") continue;
+    const std::string name = without_options(run.at("run_name"));
+    if (run.value("error_occurred", false)) {
+      failed.push_back(name + ": " + run.value("error_message", ""));
+      continue;
+    }
+    if (!figures.contains(name)) order.push_back(name);
+    Figure& figure = figures[name];
+    figure.items_per_second.push_back(run.value("items_per_second", 0.0));
+    figure.time_ms.push_back(milliseconds(run.at("real_time"), run.at("time_unit")));
+    for (const auto& [key, value] : run.items()) {
+      if (value.is_number() && std::find(kOwn.begin(), kOwn.end(), key) == kOwn.end()) {
+        figure.counters[key].push_back(value);
+      }
+    }
+  }
+  return figures;
+}
+
+void print_context(const Json& context) {
+  std::printf("Date %s, load %s\n", context.value("date", "?").c_str(),
+              context.contains("load_avg") ? context.at("load_avg").dump().c_str() : "?");
+  for (const std::string kind : {"condition ", "skipped ", "differ ", "fitness error "}) {
+    if (kind == "differ ") std::printf("\nAnswers that differ\n");
+    for (const auto& [key, value] : context.items()) {
+      if (key.starts_with(kind)) {
+        std::printf("  %s: %s\n",
+                    key.substr(kind == "condition " || kind == "differ " ? kind.size() : 0).c_str(),
+                    value.get<std::string>().c_str());
+      }
+    }
+  }
+}
+
+// A benchmark's name is group/what/setting; figures of the same group and setting are compared.
+struct Place {
+  std::string table;
+  std::string what;
+};
+
+Place place_of(const std::string& name) {
+  const std::size_t first = name.find('/');
+  const std::size_t second = name.find('/', first + 1);
+  return {name.substr(0, first) + ", " + name.substr(second + 1),
+          name.substr(first + 1, second - first - 1)};
+}
+
+std::string rate_text(double items_per_second) {
+  char text[32];
+  if (items_per_second >= 1e5) {
+    std::snprintf(text, sizeof text, "%.2f M/s", items_per_second * 1e-6);
+  } else {
+    std::snprintf(text, sizeof text, "%.1f /s", items_per_second);
+  }
+  return text;
+}
+
+void print_tables(const Figures& figures, const std::vector<std::string>& order) {
+  std::map<std::string, std::vector<std::string>> tables;
+  std::vector<std::string> table_order;
+  for (const std::string& name : order) {
+    const std::string table = place_of(name).table;
+    if (!tables.contains(table)) table_order.push_back(table);
+    tables[table].push_back(name);
+  }
+  for (const std::string& table : table_order) {
+    double ours = 0.0;
+    for (const std::string& name : tables[table]) {
+      if (place_of(name).what == "nextview") ours = median(figures.at(name).items_per_second);
+    }
+    std::printf("\n%s\n  %-34s %12s %14s %7s  %s\n", table.c_str(), "", "median", "rays, points..",
+                "+-", "nextview is");
+    for (const std::string& name : tables[table]) {
+      const Figure& figure = figures.at(name);
+      const double rate = median(figure.items_per_second);
+      std::printf("  %-34s %9.3f ms %14s %5.1f %%", place_of(name).what.c_str(),
+                  median(figure.time_ms), rate_text(rate).c_str(),
+                  100.0 * spread(figure.items_per_second));
+      if (ours > 0.0 && rate > 0.0) std::printf("  %8.2f x", ours / rate);
+      for (const auto& [counter, values] : figure.counters) {
+        std::printf("  %s %.4g", counter.c_str(), median(values));
+      }
+      std::printf("\n");
+    }
+  }
+}
+
+class Goals {
+ public:
+  explicit Goals(const Figures& figures) : figures_(figures) {}
+
+  void at_least(double wanted, const std::string& ours, const std::string& theirs) const {
+    if (!figures_.contains(ours) || !figures_.contains(theirs)) return;
+    const double ratio =
+        median(figures_.at(ours).items_per_second) / median(figures_.at(theirs).items_per_second);
+    print(ratio >= wanted, ratio, "x", "at least", wanted, ours + " : " + theirs);
+  }
+  void time_at_most(double wanted, const std::string& ours, const std::string& theirs) const {
+    if (!figures_.contains(ours) || !figures_.contains(theirs)) return;
+    const double ratio = median(figures_.at(ours).time_ms) / median(figures_.at(theirs).time_ms);
+    print(ratio <= wanted, ratio, "x", "at most", wanted, "time of " + ours + " : " + theirs);
+  }
+  void ms_at_most(double wanted, const std::string& ours, const std::string& counter = "") const {
+    if (!figures_.contains(ours)) return;
+    const Figure& figure = figures_.at(ours);
+    const double ms = median(counter.empty() ? figure.time_ms : figure.counters.at(counter));
+    print(ms <= wanted, ms, "ms", "at most", wanted, ours + (counter.empty() ? "" : " " + counter));
+  }
+
+ private:
+  static void print(bool met, double value, const char* unit, const char* relation, double wanted,
+                    const std::string& what) {
+    std::printf("  %-7s %9.2f %-2s  (%s %g)  %s\n", met ? "met" : "MISSED", value, unit, relation,
+                wanted, what.c_str());
+  }
+  const Figures& figures_;
+};
+
+void print_goals(const Figures& figures) {
+  std::printf("\nAgainst what was asked for\n");
+  const Goals goals(figures);
+  goals.at_least(40.0, "view_evaluation/nextview/5cm", "view_evaluation/textbook/5cm");
+  goals.at_least(200.0, "view_evaluation/nextview/5cm", "view_evaluation/octomap/5cm");
+  for (const std::string directions : {"320", "1280"}) {
+    goals.time_at_most(2.0, "view_evaluation/nextview_panorama_" + directions + "/5cm",
+                       "view_evaluation/nextview/5cm");
+  }
+  for (const std::string room : {"boxes", "columns"}) {
+    goals.ms_at_most(10.0, "decision/nextview/" + room + "/10cm/all_views", "median_ms");
+    for (const std::string view : {"3", "10", "30"}) {
+      const std::string moment = "/" + room + "/10cm/view_" + view;
+      goals.at_least(50.0, "decision/nextview" + moment, "decision/textbook" + moment);
+      goals.at_least(1.7, "decision/nextview_2_threads" + moment, "decision/nextview" + moment);
+    }
+  }
+  goals.at_least(10.0, "map_update/nextview/5cm", "map_update/octomap/5cm");
+  goals.at_least(50.0, "map_update/nextview/5cm", "map_update/openvdb/5cm");
+  goals.at_least(25.0, "map_update/nextview_marking/5cm", "map_update/octomap/5cm");
+  for (const std::string digest : {"", "with_digest_"}) {
+    for (const std::string size : {"10cm", "5cm"}) {
+      goals.time_at_most(1.2, "map_update/nextview_" + digest + "after_100_rooms/" + size,
+                         "map_update/nextview_" + digest + "after_1_room/" + size);
+    }
+  }
+  for (const std::string scene : {"boxes", "conference"}) {
+    goals.at_least(0.8, "scan/nextview/" + scene + "/500x500", "scan/embree/" + scene + "/500x500");
+  }
+  goals.ms_at_most(15.0, "scan/nextview/conference/500x500");
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    std::cerr << "usage: nextview_bench_table FILE.json\n";
+    return 2;
+  }
+  try {
+    std::ifstream file(argv[1]);
+    const Json json = Json::parse(file);
+    std::vector<std::string> order;
+    std::vector<std::string> failed;
+    const Figures figures = read_figures(json, order, failed);
+    print_context(json.at("context"));
+    print_tables(figures, order);
+    print_goals(figures);
+    for (const std::string& line : failed) std::printf("\nNOT MEASURED: %s\n", line.c_str());
+  } catch (const Json::exception& error) {
+    std::cerr << argv[1] << " is not what nextview_bench writes: " << error.what() << "\n";
+    return 1;
+  }
+  return 0;
+}
