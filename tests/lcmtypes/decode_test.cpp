@@ -58,7 +58,7 @@ TYPED_TEST(EveryType, IsRefusedWhenCutShortAnywhereOrTooLong) {
               "")
         << size;
   }
-  for (std::size_t extra : {1, 4, 1000}) {
+  for (const std::size_t extra : {1U, 4U, 1000U}) {
     EXPECT_NE(reason_for<TypeParam>(resized(bytes, bytes.size() + extra)), "") << extra;
   }
 }
