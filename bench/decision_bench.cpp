@@ -3,7 +3,9 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
+#include <unordered_map>
 
 #include "bench/bench_groups.h"
 #include "bench/exploration.h"
@@ -24,6 +26,35 @@ struct Moment {
   int view;
   SensorPose present;  // where the last view was taken from
   std::unique_ptr<MapBuilder> builder;
+};
+
+// Works out every prediction by one kernel and answers with the counts another gave, so that the
+// search takes the other's way: the same decision, position for position, at this kernel's price.
+class SameWay : public ViewPredictor {
+ public:
+  SameWay(std::shared_ptr<ViewPredictor> kernel, std::shared_ptr<ViewPredictor> leader)
+      : ViewPredictor(leader->orientations(), leader->counts_quality()),
+        kernel_(std::move(kernel)),
+        leader_(std::move(leader)) {}
+
+  void predict(const VoxelMap& map, const VoxelIndex& sensor,
+               std::span<ViewCounts> per_orientation) override {
+    auto& answer = answers_[map.slot(sensor)];
+    if (answer.empty()) {  // the first decision, before anything is timed
+      answer.resize(per_orientation.size());
+      leader_->predict(map, sensor, answer);
+    }
+    kernel_->predict(map, sensor, per_orientation);
+    benchmark::DoNotOptimize(per_orientation.data());
+    std::copy(answer.begin(), answer.end(), per_orientation.begin());
+  }
+  void map_changed(const VoxelMap&, std::span<const std::uint32_t>,
+                   std::span<const std::uint32_t>) override {}
+
+ private:
+  std::shared_ptr<ViewPredictor> kernel_;
+  std::shared_ptr<ViewPredictor> leader_;
+  std::unordered_map<std::size_t, std::vector<ViewCounts>> answers_;  // by slot
 };
 
 // What a run did, to do it again without scanning.
@@ -151,9 +182,14 @@ void register_moment(const std::shared_ptr<Moment>& moment, Agreement& with_plai
   static std::vector<std::shared_ptr<TextbookCaster>> kept;
   kept.push_back(std::make_shared<TextbookCaster>(moment->builder->map(),
                                                   prediction_reach(paper_raster(), voxel_size_m)));
-  register_decider("textbook", moment,
-                   std::make_shared<CastingViewPredictor<TextbookCaster>>(
-                       *kept.back(), paper_raster(), icosahedron_orientations()));
+  const auto textbook = std::make_shared<CastingViewPredictor<TextbookCaster>>(
+      *kept.back(), paper_raster(), icosahedron_orientations());
+  const auto same_way = std::make_shared<SameWay>(textbook, fast_predictor(voxel_size_m, false, 1));
+  with_plain.compare(same_decision(decide(*moment, *same_way),
+                                   decide(*moment, *fast_predictor(voxel_size_m, false, 1))));
+  register_decider("textbook", moment, same_way);
+  // Left to its own counts it may try other positions, and more or fewer of them.
+  register_decider("textbook_its_own_way", moment, textbook);
   register_decider("nextview_panorama_1280", moment,
                    std::make_shared<PanoramaViewPredictor>(paper_raster(), voxel_size_m,
                                                            icosahedron_orientations(3)));

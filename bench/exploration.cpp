@@ -62,4 +62,20 @@ ViewCost Exploration::step(ViewPredictor& predictor) {
   return cost;
 }
 
+void Exploration::carry_elsewhere() {
+  const VoxelMap& map = builder_.map();
+  RandomStream random(parameters_.seed, view_, 1, RandomPurpose::InitialSimplex);
+  constexpr int kDraws = 100000;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    VoxelIndex voxel = map.window().min;
+    for (int axis = 0; axis < 3; ++axis) {
+      voxel[axis] +=
+          static_cast<int>(random.below(static_cast<std::uint32_t>(map.window().size[axis])));
+    }
+    if (!is_clear(map, voxel, parameters_.planner.feasibility.clearance_m)) continue;
+    pose_.position_m = map.grid().center_m(voxel);
+    return;
+  }
+}
+
 }  // namespace nextview

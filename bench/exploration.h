@@ -40,6 +40,10 @@ class Exploration {
   /// One view.
   ViewCost step(ViewPredictor& predictor);
 
+  /// Carries the sensor to a random place of the known free space, looking where it looked: for
+  /// when a simplex, which knows only its surroundings, finds nothing more there.
+  void carry_elsewhere();
+
   MapBuilder& builder() { return builder_; }
   const SensorPose& pose() const { return pose_; }  ///< where the next view is taken from
   int views() const { return view_; }

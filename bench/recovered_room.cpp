@@ -41,23 +41,7 @@ std::vector<RangeImage> scan_room() {
   return images;
 }
 
-bool has_clearance(const VoxelMap& map, const VoxelIndex& voxel, int reach) {
-  if (map.label(voxel) != Label::Empty) return false;
-  for (int k = -reach; k <= reach; ++k) {
-    for (int j = -reach; j <= reach; ++j) {
-      for (int i = -reach; i <= reach; ++i) {
-        const VoxelIndex step(i, j, k);
-        if (step.squaredNorm() <= reach * reach && map.label(voxel + step) == Label::Occupied) {
-          return false;
-        }
-      }
-    }
-  }
-  return true;
-}
-
 std::vector<VoxelIndex> feasible_positions(const VoxelMap& map) {
-  const int reach = static_cast<int>(std::ceil(kClearance_m / map.grid().voxel_size_m));
   RandomStream random(3, 1, 1, RandomPurpose::InitialSimplex);
   std::vector<VoxelIndex> positions;
   while (positions.size() < kPositions) {
@@ -66,7 +50,7 @@ std::vector<VoxelIndex> feasible_positions(const VoxelMap& map) {
       voxel[axis] +=
           static_cast<int>(random.below(static_cast<std::uint32_t>(map.window().size[axis])));
     }
-    if (has_clearance(map, voxel, reach)) positions.push_back(voxel);
+    if (is_clear(map, voxel, kClearance_m)) positions.push_back(voxel);
   }
   return positions;
 }
@@ -91,6 +75,22 @@ MapWindow window_around(const TriangleMesh& mesh, double voxel_size_m) {
   const VoxelIndex min = grid.voxel_of(bounds.min()) - VoxelIndex::Constant(kMargin);
   const VoxelIndex max = grid.voxel_of(bounds.max()) + VoxelIndex::Constant(kMargin);
   return {min, max - min + VoxelIndex::Ones()};
+}
+
+bool is_clear(const VoxelMap& map, const VoxelIndex& voxel, double clearance_m) {
+  const int reach = static_cast<int>(std::ceil(clearance_m / map.grid().voxel_size_m));
+  if (map.label(voxel) != Label::Empty) return false;
+  for (int k = -reach; k <= reach; ++k) {
+    for (int j = -reach; j <= reach; ++j) {
+      for (int i = -reach; i <= reach; ++i) {
+        const VoxelIndex step(i, j, k);
+        if (step.squaredNorm() < reach * reach && map.label(voxel + step) == Label::Occupied) {
+          return false;
+        }
+      }
+    }
+  }
+  return true;
 }
 
 std::string size_name(double voxel_size_m) {

@@ -23,6 +23,9 @@ BenchScene load_bench_scene(const std::string& name);
 /// A window of voxels around a scene, a few more on every side.
 MapWindow window_around(const TriangleMesh& mesh, double voxel_size_m);
 
+/// Whether a voxel is Empty and no Occupied one is nearer to it than a length.
+bool is_clear(const VoxelMap& map, const VoxelIndex& voxel, double clearance_m);
+
 /// A voxel size as it stands in the names of benchmarks: 5cm.
 std::string size_name(double voxel_size_m);
 

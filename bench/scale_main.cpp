@@ -3,6 +3,7 @@
 // nextview_bench_scale SCENE VOXEL_SIZE_M VIEWS
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <iostream>
@@ -37,20 +38,25 @@ struct Row {
   std::vector<double> evaluations;
 };
 
-void print_row(const Row& row, Exploration& exploration, double voxel_size_m) {
+// Volume of what is known to be Empty or Occupied.
+double seen_m3(Exploration& exploration) {
   const MapStatistics statistics = exploration.builder().statistics();
-  const auto voxels = [&](Label label) {
-    return static_cast<double>(statistics.voxels[static_cast<std::size_t>(label)]);
-  };
-  const double seen = voxels(Label::Empty) + voxels(Label::Occupied);
+  const std::int64_t seen = statistics.voxels[static_cast<std::size_t>(Label::Empty)] +
+                            statistics.voxels[static_cast<std::size_t>(Label::Occupied)];
+  return static_cast<double>(seen) * std::pow(exploration.builder().map().grid().voxel_size_m, 3);
+}
+
+void print_row(const Row& row, Exploration& exploration, double voxel_size_m) {
+  const double voxel_m3 = std::pow(voxel_size_m, 3);
+  const double seen = seen_m3(exploration) / voxel_m3;
   const double map_bytes = static_cast<double>(exploration.builder().memory_bytes());
   const double field_bytes =
       static_cast<double>(FreeSpaceField(exploration.builder().map()).memory_bytes());
   std::printf("%6d %9.1f %8.2f %8.2f %8.2f %9.2f %9.2f %6.0f %8.1f %8.1f %8.2f\n",
-              exploration.views(), seen * voxel_size_m * voxel_size_m * voxel_size_m,
-              median(row.fold_ms), median(row.digest_ms), median(row.field_ms),
-              median(row.decision_ms), worst(row.decision_ms), median(row.evaluations),
-              map_bytes / 1e6, field_bytes / 1e6, (map_bytes + field_bytes) / seen);
+              exploration.views(), seen_m3(exploration), median(row.fold_ms), median(row.digest_ms),
+              median(row.field_ms), median(row.decision_ms), worst(row.decision_ms),
+              median(row.evaluations), map_bytes / 1e6, field_bytes / 1e6,
+              (map_bytes + field_bytes) / seen);
   std::fflush(stdout);
 }
 
@@ -70,8 +76,16 @@ int explore(const std::string& name, double voxel_size_m, int views) {
   std::printf("%6s %9s %8s %8s %8s %9s %9s %6s %8s %8s %8s\n", "view", "seen m3", "fold ms",
               "digest", "field", "decision", "worst", "tried", "map MB", "field MB", "B/voxel");
   Row row;
+  constexpr int kPatience = 5;  // views that see next to nothing new before the sensor is carried
+  int idle_views = 0;
   for (int view = 1; view <= views; ++view) {
+    const double before_m3 = seen_m3(exploration);
     const ViewCost cost = exploration.step(predictor);
+    idle_views = seen_m3(exploration) < 1.002 * before_m3 ? idle_views + 1 : 0;
+    if (idle_views == kPatience) {
+      exploration.carry_elsewhere();
+      idle_views = 0;
+    }
     row.fold_ms.push_back(1e3 * cost.fold_s);
     row.digest_ms.push_back(1e3 * cost.digest_s);
     row.field_ms.push_back(1e3 * cost.field_s);

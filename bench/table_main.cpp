@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -50,6 +51,17 @@ std::string without_options(std::string name) {
   return name;
 }
 
+// Google Benchmark writes NaN where a counter's mean is 0, which is no JSON.
+Json read_json(const char* path) {
+  std::ifstream file(path);
+  std::string text(std::istreambuf_iterator<char>(file), {});
+  const std::string nan = ": NaN";
+  for (std::size_t at = text.find(nan); at != std::string::npos; at = text.find(nan, at)) {
+    text.replace(at, nan.size(), ": null");
+  }
+  return Json::parse(text);
+}
+
 Figures read_figures(const Json& json, std::vector<std::string>& order,
                      std::vector<std::string>& failed) {
   // What Google Benchmark itself writes for every repetition; the rest are counters.
@@ -69,7 +81,12 @@ Figures read_figures(const Json& json, std::vector<std::string>& order,
     if (!figures.contains(name)) order.push_back(name);
     Figure& figure = figures[name];
     figure.items_per_second.push_back(run.value("items_per_second", 0.0));
-    figure.time_ms.push_back(milliseconds(run.at("real_time"), run.at("time_unit")));
+    // Google Benchmark divides by the processor's time unless a benchmark asks for another.
+    const std::string full_name = run.at("run_name");
+    const bool by_clock =
+        full_name.ends_with("_time") || full_name.find("_time/") != std::string::npos;
+    figure.time_ms.push_back(
+        milliseconds(run.at(by_clock ? "real_time" : "cpu_time"), run.at("time_unit")));
     for (const auto& [key, value] : run.items()) {
       if (value.is_number() && std::find(kOwn.begin(), kOwn.end(), key) == kOwn.end()) {
         figure.counters[key].push_back(value);
@@ -126,19 +143,23 @@ void print_tables(const Figures& figures, const std::vector<std::string>& order)
     tables[table].push_back(name);
   }
   for (const std::string& table : table_order) {
-    double ours = 0.0;
+    double ours_ms = 0.0;
     for (const std::string& name : tables[table]) {
-      if (place_of(name).what == "nextview") ours = median(figures.at(name).items_per_second);
+      if (place_of(name).what == "nextview") ours_ms = median(figures.at(name).time_ms);
     }
-    std::printf("\n%s\n  %-34s %12s %14s %7s  %s\n", table.c_str(), "", "median", "rays, points..",
-                "+-", "nextview is");
+    std::sort(tables[table].begin(), tables[table].end(),
+              [&](const std::string& a, const std::string& b) {
+                return median(figures.at(a).time_ms) < median(figures.at(b).time_ms);
+              });
+    std::printf("\n%s\n  %-34s %12s %14s %7s  %s\n", table.c_str(), "", "median", "a second", "+-",
+                "of nextview's time");
     for (const std::string& name : tables[table]) {
       const Figure& figure = figures.at(name);
       const double rate = median(figure.items_per_second);
       std::printf("  %-34s %9.3f ms %14s %5.1f %%", place_of(name).what.c_str(),
                   median(figure.time_ms), rate_text(rate).c_str(),
                   100.0 * spread(figure.items_per_second));
-      if (ours > 0.0 && rate > 0.0) std::printf("  %8.2f x", ours / rate);
+      if (ours_ms > 0.0) std::printf("  %8.2f x", median(figure.time_ms) / ours_ms);
       for (const auto& [counter, values] : figure.counters) {
         std::printf("  %s %.4g", counter.c_str(), median(values));
       }
@@ -218,8 +239,7 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
-    std::ifstream file(argv[1]);
-    const Json json = Json::parse(file);
+    const Json json = read_json(argv[1]);
     std::vector<std::string> order;
     std::vector<std::string> failed;
     const Figures figures = read_figures(json, order, failed);

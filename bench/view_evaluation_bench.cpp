@@ -1,6 +1,7 @@
 // Whole fitness: the best of 20 directions at each of 60 positions, 64 x 30 rays a view.
 
 #include <benchmark/benchmark.h>
+#include <hwy/targets.h>
 
 #include <algorithm>
 #include <cmath>
@@ -40,6 +41,15 @@ void set_rays(benchmark::State& state, const RecoveredRoom& room, const ViewPred
                                 RecoveredRoom::raster().rays.pixels());
   state.SetItemsProcessed(state.iterations() * rays);
 }
+
+// While it lives, the ray kernel takes the best of a choice of instruction sets.
+class InstructionSets {
+ public:
+  explicit InstructionSets(std::int64_t targets) { hwy::SetSupportedTargetsForTest(targets); }
+  InstructionSets(const InstructionSets&) = delete;
+  InstructionSets& operator=(const InstructionSets&) = delete;
+  ~InstructionSets() { hwy::SetSupportedTargetsForTest(0); }
+};
 
 benchmark::internal::Benchmark* register_predictor(const std::string& name,
                                                    const RecoveredRoom& room, Predictor predictor) {
@@ -162,6 +172,29 @@ void report_panorama_error(const RecoveredRoom& room, ViewPredictor& panorama,
                    text);
 }
 
+// The same kernel on lesser instruction sets than this processor's best.
+void register_on_lesser_targets(const RecoveredRoom& room, ViewPredictor& plain, Predictor fast) {
+  for (const std::int64_t target : {std::int64_t{HWY_AVX2}, std::int64_t{HWY_SSE4}}) {
+    if ((hwy::SupportedTargets() & target) == 0) continue;
+    const std::string name = std::string("nextview_on_") + hwy::TargetName(target);
+    {
+      const InstructionSets only(target);
+      require_same_counts(room, name, *fast, plain);
+    }
+    benchmark::RegisterBenchmark(
+        ("view_evaluation/" + name + "/" + size_name(room.voxel_size_m())).c_str(),
+        [&room, fast, target](benchmark::State& state) {
+          const InstructionSets only(target);
+          std::vector<ViewCounts> counts(fast->orientations().size());
+          for (auto _ : state) {
+            benchmark::DoNotOptimize(evaluate(room.map(), *fast, room.positions(), counts));
+          }
+          set_rays(state, room, *fast);
+        })
+        ->Unit(benchmark::kMillisecond);
+  }
+}
+
 void register_panorama(const RecoveredRoom& room) {
   for (const int subdivisions : {0, 2, 3}) {
     const auto orientations = icosahedron_orientations(subdivisions);
@@ -199,6 +232,7 @@ void register_view_evaluation(const BenchOptions& options) {
       require_same_counts(room, "nextview" + suffix, *fast, *plain);
       register_predictor("nextview" + suffix, room, fast);
       register_predictor("plain" + suffix, room, plain);
+      if (!quality) register_on_lesser_targets(room, *plain, fast);
     }
     register_with_update(
         room, std::make_shared<FastViewPredictor>(raster, voxel_size_m, orientations, false));
