@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -32,9 +33,19 @@ struct AngleStep {
 AngleStep angle_step(const std::vector<double>& sines, const std::vector<double>& cosines, int from,
                      int to);
 
+/// condition ? yes : no, without a branch: compilers make branches of nested conditions, and with
+/// branches they do not vectorise.
+inline float select(bool condition, float yes, float no) {
+  const std::uint32_t mask = -static_cast<std::uint32_t>(condition);
+  return std::bit_cast<float>((std::bit_cast<std::uint32_t>(yes) & mask) |
+                              (std::bit_cast<std::uint32_t>(no) & ~mask));
+}
+inline bool is_number(float value) { return value == value; }
+
 /// The range, or NaN where it can give no normal.
 inline float usable_range(float range_m) {
-  return range_m >= 1e-3f && range_m <= 1e6f ? range_m : std::numeric_limits<float>::quiet_NaN();
+  const bool usable = (range_m >= 1e-3f) & (range_m <= 1e6f);
+  return select(usable, range_m, std::numeric_limits<float>::quiet_NaN());
 }
 
 /// dw/d(angle) at a pixel from its w and a neighbour's.
@@ -59,39 +70,40 @@ inline float constant_along_column(float w, float slope_a, float sin_a, float co
   return sin_a * (sin_a * w + cos_a * slope_a);
 }
 
-/// The slope seen from one side.
-struct SlopeCandidate {
-  float slope;         ///< NaN when that neighbour is missing
-  float bend;          ///< relative_bend at that neighbour: small if the one beyond it confirms the
-                       ///< slope, NaN if there is none beyond it
-  float squared_step;  ///< to that neighbour
-};
-
-/// Chooses between the slopes of both sides. bend is the pixel's own, NaN when a side is missing.
-inline float choose_slope(const SlopeCandidate& previous, const SlopeCandidate& next, float bend) {
+/// Chooses between the slopes seen from both sides.
+/// @param previous, next  the slopes; NaN when that neighbour is missing
+/// @param bend            relative_bend at the pixel itself; NaN when a neighbour is missing
+/// @param bend_previous, bend_next  the same at its neighbours: small if the pixel beyond confirms
+///                        the slope, NaN if there is none beyond
+/// @param step_previous, step_next  squared_step to the neighbours
+inline float choose_slope(float previous, float next, float bend, float bend_previous,
+                          float bend_next, float step_previous, float step_next) {
   constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
   // A slope that nothing confirms or contradicts counts as barely confirmed.
-  const float previous_bend = previous.bend == previous.bend ? previous.bend : kLargestBend;
-  const float next_bend = next.bend == next.bend ? next.bend : kLargestBend;
-  const bool previous_fits = previous_bend <= kLargestBend;
-  const bool next_fits = next_bend <= kLargestBend;
-  const float mean = 0.5f * (previous.slope + next.slope);
+  bend_previous = select(is_number(bend_previous), bend_previous, kLargestBend);
+  bend_next = select(is_number(bend_next), bend_next, kLargestBend);
+  const bool previous_fits = bend_previous <= kLargestBend;
+  const bool next_fits = bend_next <= kLargestBend;
+  const float mean = 0.5f * (previous + next);
 
   // Both sides contradicted, as in noise: the mean, unless one side lies across a jump.
-  const float unconfirmed = next.squared_step > 4.0f * previous.squared_step   ? previous.slope
-                            : previous.squared_step > 4.0f * next.squared_step ? next.slope
-                                                                               : mean;
+  const bool jump_next = step_next > 4.0f * step_previous;
+  const bool jump_previous = step_previous > 4.0f * step_next;
+  const float unconfirmed = select(jump_next, previous, select(jump_previous, next, mean));
   // A crease or an edge: the side that is confirmed, or confirmed better.
-  const float confirmed = previous_bend < next_bend ? previous.slope : next.slope;
-  const float one_sided = previous_fits | next_fits ? confirmed : unconfirmed;
-  const float both = bend <= kLargestBend ? mean : one_sided;
+  const float confirmed = select(bend_previous < bend_next, previous, next);
+  const float one_sided = select(previous_fits | next_fits, confirmed, unconfirmed);
+  const float both = select(bend <= kLargestBend, mean, one_sided);
 
   // With one side only, it must not be contradicted.
-  const float only_previous = previous_fits ? previous.slope : kNaN;
-  const float only_next = next_fits ? next.slope : kNaN;
-  const bool has_previous = previous.slope == previous.slope;
-  const bool has_next = next.slope == next.slope;
-  return has_previous ? (has_next ? both : only_previous) : only_next;
+  const float only_previous = select(previous_fits, previous, kNaN);
+  const float only_next = select(next_fits, next, kNaN);
+  const float with_previous = select(is_number(next), both, only_previous);
+  return select(is_number(previous), with_previous, only_next);
+}
+
+inline std::int32_t round_to_integer(float value) {
+  return static_cast<std::int32_t>(value + std::copysign(0.5f, value));
 }
 
 /// A normal as the map sums it; see NormalRow.
@@ -99,13 +111,10 @@ struct PointNormal {
   std::int32_t x, y, z, quality;
 };
 
-inline std::int32_t round_to_integer(float value) {
-  return static_cast<std::int32_t>(value + std::copysign(0.5f, value));
-}
-
 /// The normal from w and its slopes at ray angles a, b; all zero when any of them is NaN.
+/// @param r world_from_sensor
 inline PointNormal point_normal(float w, float slope_a, float slope_b, float sin_a, float cos_a,
-                                float sin_b, float cos_b, const float (&world_from_sensor)[3][3]) {
+                                float sin_b, float cos_b, const float (&r)[3][3]) {
   // m in the frame of the row: x, along the row's plane, and across it.
   const float across = slope_b / cos_a;
   const float along = cos_a * w - sin_a * slope_a;
@@ -113,16 +122,17 @@ inline PointNormal point_normal(float w, float slope_a, float slope_b, float sin
   const float y = along * cos_b - across * sin_b;
   const float z = along * sin_b + across * cos_b;
   const float length = std::sqrt(w * w + slope_a * slope_a + across * across);
-  const bool valid = length > 0.0f && length < 1e15f;
-  const float inverse = valid ? 1.0f / length : 0.0f;
+  const bool valid = (length > 0.0f) & (length < 1e15f);
+  const float inverse = 1.0f / select(valid, length, 1.0f);
   const float unit = -static_cast<float>(SurfaceVoxel::kNormalUnit) * inverse;
-  const auto component = [&](int i) {
-    const float* const r = world_from_sensor[i];
-    const float value = (r[0] * x + r[1] * y + r[2] * z) * unit;
-    return round_to_integer(valid ? value : 0.0f);
-  };
+  const float world_x = (r[0][0] * x + r[0][1] * y + r[0][2] * z) * unit;
+  const float world_y = (r[1][0] * x + r[1][1] * y + r[1][2] * z) * unit;
+  const float world_z = (r[2][0] * x + r[2][1] * y + r[2][2] * z) * unit;
   const float quality = static_cast<float>(SurfaceVoxel::kQualityUnit) * (w * inverse);
-  return {component(0), component(1), component(2), round_to_integer(valid ? quality : 0.0f)};
+  return {round_to_integer(select(valid, world_x, 0.0f)),
+          round_to_integer(select(valid, world_y, 0.0f)),
+          round_to_integer(select(valid, world_z, 0.0f)),
+          round_to_integer(select(valid, quality, 0.0f))};
 }
 
 }  // namespace nextview

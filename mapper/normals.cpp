@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "mapper/normal_slopes.h"
+#include "mapper/vector_clones.h"
 #include "mapper/voxel_map.h"
 
 namespace nextview {
@@ -16,6 +17,103 @@ std::vector<float> to_float(const std::vector<double>& values) {
   std::transform(values.begin(), values.end(), floats.begin(),
                  [](double value) { return static_cast<float>(value); });
   return floats;
+}
+
+// One row of an array, its neighbours a stride before and after, and the steps to them. The arrays
+// reach a stride beyond both ends.
+struct RowView {
+  const float* here;
+  const float* previous;
+  const float* next;
+};
+struct StepView {
+  const float* cosine;
+  const float* sine;
+  const float* inverse_sine;
+};
+
+NEXTVIEW_VECTOR_CLONES
+void invert_ranges(int columns, const float* __restrict from, float* __restrict range,
+                   float* __restrict w) {
+#pragma omp simd
+  for (int u = 0; u < columns; ++u) {
+    range[u] = usable_range(from[u]);
+    w[u] = 1.0f / range[u];
+  }
+}
+
+NEXTVIEW_VECTOR_CLONES
+void bends_along_row(int columns, RowView w, const float* __restrict d, StepView previous,
+                     StepView next, float* __restrict bend) {
+#pragma omp simd
+  for (int u = 0; u < columns; ++u) {
+    const float slope_p =
+        slope_to(w.here[u], w.previous[u], previous.cosine[u], previous.inverse_sine[u]);
+    const float slope_n = slope_to(w.here[u], w.next[u], next.cosine[u], next.inverse_sine[u]);
+    bend[u] = relative_bend(slope_p, slope_n, d[u]);
+  }
+}
+
+NEXTVIEW_VECTOR_CLONES
+void choose_along_row(int columns, RowView w, RowView d, RowView bend, StepView previous,
+                      StepView next, float* __restrict slope) {
+#pragma omp simd
+  for (int u = 0; u < columns; ++u) {
+    const float slope_p =
+        slope_to(w.here[u], w.previous[u], previous.cosine[u], previous.inverse_sine[u]);
+    const float slope_n = slope_to(w.here[u], w.next[u], next.cosine[u], next.inverse_sine[u]);
+    const float step_p =
+        squared_step(d.here[u], d.previous[u], previous.cosine[u], previous.sine[u]);
+    const float step_n = squared_step(d.here[u], d.next[u], next.cosine[u], next.sine[u]);
+    slope[u] = choose_slope(slope_p, slope_n, bend.here[u], bend.previous[u], bend.next[u], step_p,
+                            step_n);
+  }
+}
+
+NEXTVIEW_VECTOR_CLONES
+void bends_along_column(int columns, RowView w, const float* __restrict d,
+                        const float* __restrict slope_a, const float* __restrict sin_a,
+                        const float* __restrict cos_a, AngleStep previous, AngleStep next,
+                        float* __restrict bend) {
+#pragma omp simd
+  for (int u = 0; u < columns; ++u) {
+    const float c = constant_along_column(w.here[u], slope_a[u], sin_a[u], cos_a[u]);
+    const float here = w.here[u] - c;
+    const float slope_p = slope_to(here, w.previous[u] - c, previous.cosine, previous.inverse_sine);
+    const float slope_n = slope_to(here, w.next[u] - c, next.cosine, next.inverse_sine);
+    bend[u] = relative_bend(slope_p, slope_n, d[u]);
+  }
+}
+
+struct NormalArrays {
+  std::int32_t* __restrict x;
+  std::int32_t* __restrict y;
+  std::int32_t* __restrict z;
+  std::int32_t* __restrict quality;
+};
+
+NEXTVIEW_VECTOR_CLONES
+void normals_of_row(int columns, RowView w, RowView d, RowView bend,
+                    const float* __restrict slope_a, const float* __restrict sin_a,
+                    const float* __restrict cos_a, float sin_b, float cos_b, AngleStep previous,
+                    AngleStep next, const float (&rotation)[3][3], NormalArrays normals) {
+#pragma omp simd
+  for (int u = 0; u < columns; ++u) {
+    const float c = constant_along_column(w.here[u], slope_a[u], sin_a[u], cos_a[u]);
+    const float here = w.here[u] - c;
+    const float slope_p = slope_to(here, w.previous[u] - c, previous.cosine, previous.inverse_sine);
+    const float slope_n = slope_to(here, w.next[u] - c, next.cosine, next.inverse_sine);
+    const float step_p = squared_step(d.here[u], d.previous[u], previous.cosine, previous.sine);
+    const float step_n = squared_step(d.here[u], d.next[u], next.cosine, next.sine);
+    const float slope_b = choose_slope(slope_p, slope_n, bend.here[u], bend.previous[u],
+                                       bend.next[u], step_p, step_n);
+    const PointNormal normal =
+        point_normal(w.here[u], slope_a[u], slope_b, sin_a[u], cos_a[u], sin_b, cos_b, rotation);
+    normals.x[u] = normal.x;
+    normals.y[u] = normal.y;
+    normals.z[u] = normal.z;
+    normals.quality[u] = normal.quality;
+  }
 }
 
 }  // namespace
@@ -103,96 +201,44 @@ void NormalEstimator::prepare(const RangeImage& image) {
 void NormalEstimator::take_ranges(const RangeImage& image) {
   const float* from = image.range_m.data();
   for (int v = 0; v < image.rays.rows(); ++v, from += columns_) {
-    float* const range = range_.row(v);
-    float* const w = inverse_range_.row(v);
-    for (int u = 0; u < columns_; ++u) {
-      range[u] = usable_range(from[u]);
-      w[u] = 1.0f / range[u];
-    }
+    invert_ranges(columns_, from, range_.row(v), inverse_range_.row(v));
   }
 }
 
 void NormalEstimator::slope_along_row(int v) {
   const int s = column_axis_.stride;
-  const Step& previous = column_axis_.previous;
-  const Step& next = column_axis_.next;
-  const float* const w = inverse_range_.row(v);
-  const float* const d = range_.row(v);
+  const auto across = [s](const float* row) { return RowView{row, row - s, row + s}; };
+  const auto steps = [](const Step& step) {
+    return StepView{step.cosine.data(), step.sine.data(), step.inverse_sine.data()};
+  };
   float* const bend = row_bend_.data() + range_.pad_columns;
-  float* const chosen = slope_.row(v);
-  for (int u = 0; u < columns_; ++u) {
-    const float slope_p = slope_to(w[u], w[u - s], previous.cosine[u], previous.inverse_sine[u]);
-    const float slope_n = slope_to(w[u], w[u + s], next.cosine[u], next.inverse_sine[u]);
-    bend[u] = relative_bend(slope_p, slope_n, d[u]);
-  }
-  for (int u = 0; u < columns_; ++u) {
-    const float slope_p = slope_to(w[u], w[u - s], previous.cosine[u], previous.inverse_sine[u]);
-    const float slope_n = slope_to(w[u], w[u + s], next.cosine[u], next.inverse_sine[u]);
-    const float step_p = squared_step(d[u], d[u - s], previous.cosine[u], previous.sine[u]);
-    const float step_n = squared_step(d[u], d[u + s], next.cosine[u], next.sine[u]);
-    chosen[u] =
-        choose_slope({slope_p, bend[u - s], step_p}, {slope_n, bend[u + s], step_n}, bend[u]);
-  }
+  bends_along_row(columns_, across(inverse_range_.row(v)), range_.row(v),
+                  steps(column_axis_.previous), steps(column_axis_.next), bend);
+  choose_along_row(columns_, across(inverse_range_.row(v)), across(range_.row(v)), across(bend),
+                   steps(column_axis_.previous), steps(column_axis_.next), slope_.row(v));
 }
 
 void NormalEstimator::bend_along_column(int v) {
-  const auto i = static_cast<std::size_t>(v);
   const int s = row_axis_.stride;
-  const Step& previous = row_axis_.previous;
-  const Step& next = row_axis_.next;
-  const float* const w = inverse_range_.row(v);
-  const float* const w_previous = inverse_range_.row(v - s);
-  const float* const w_next = inverse_range_.row(v + s);
-  const float* const d = range_.row(v);
-  const float* const slope = slope_.row(v);
-  float* const bend = column_bend_.row(v);
-  for (int u = 0; u < columns_; ++u) {
-    const float c = constant_along_column(w[u], slope[u], column_sin_[u], column_cos_[u]);
-    const float here = w[u] - c;
-    const float slope_p =
-        slope_to(here, w_previous[u] - c, previous.cosine[i], previous.inverse_sine[i]);
-    const float slope_n = slope_to(here, w_next[u] - c, next.cosine[i], next.inverse_sine[i]);
-    bend[u] = relative_bend(slope_p, slope_n, d[u]);
-  }
+  const RowView w = {inverse_range_.row(v), inverse_range_.row(v - s), inverse_range_.row(v + s)};
+  bends_along_column(columns_, w, range_.row(v), slope_.row(v), column_sin_.data(),
+                     column_cos_.data(), row_axis_.previous.at(v), row_axis_.next.at(v),
+                     column_bend_.row(v));
 }
 
 void NormalEstimator::row(int v, NormalRow& normals) const {
   for (auto* part : {&normals.x, &normals.y, &normals.z, &normals.quality}) {
     part->resize(static_cast<std::size_t>(columns_));
   }
-  const auto i = static_cast<std::size_t>(v);
   const int s = row_axis_.stride;
-  const Step& previous = row_axis_.previous;
-  const Step& next = row_axis_.next;
-  const float* const w = inverse_range_.row(v);
-  const float* const w_previous = inverse_range_.row(v - s);
-  const float* const w_next = inverse_range_.row(v + s);
-  const float* const d = range_.row(v);
-  const float* const d_previous = range_.row(v - s);
-  const float* const d_next = range_.row(v + s);
-  const float* const slope_a = slope_.row(v);
-  const float* const bend = column_bend_.row(v);
-  const float* const bend_previous = column_bend_.row(v - s);
-  const float* const bend_next = column_bend_.row(v + s);
-  for (int u = 0; u < columns_; ++u) {
-    const float sa = column_sin_[u];
-    const float ca = column_cos_[u];
-    const float c = constant_along_column(w[u], slope_a[u], sa, ca);
-    const float here = w[u] - c;
-    const SlopeCandidate p = {
-        slope_to(here, w_previous[u] - c, previous.cosine[i], previous.inverse_sine[i]),
-        bend_previous[u], squared_step(d[u], d_previous[u], previous.cosine[i], previous.sine[i])};
-    const SlopeCandidate n = {slope_to(here, w_next[u] - c, next.cosine[i], next.inverse_sine[i]),
-                              bend_next[u],
-                              squared_step(d[u], d_next[u], next.cosine[i], next.sine[i])};
-    const float slope_b = choose_slope(p, n, bend[u]);
-    const PointNormal normal =
-        point_normal(w[u], slope_a[u], slope_b, sa, ca, row_sin_[i], row_cos_[i], rotation_);
-    normals.x[u] = normal.x;
-    normals.y[u] = normal.y;
-    normals.z[u] = normal.z;
-    normals.quality[u] = normal.quality;
-  }
+  const auto down = [&](const PaddedRows& rows) {
+    return RowView{rows.row(v), rows.row(v - s), rows.row(v + s)};
+  };
+  const auto i = static_cast<std::size_t>(v);
+  normals_of_row(columns_, down(inverse_range_), down(range_), down(column_bend_), slope_.row(v),
+                 column_sin_.data(), column_cos_.data(), row_sin_[i], row_cos_[i],
+                 row_axis_.previous.at(v), row_axis_.next.at(v), rotation_,
+                 {normals.x.data(), normals.y.data(), normals.z.data(), normals.quality.data()});
 }
 
 std::size_t NormalEstimator::memory_bytes() const {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mapper/normal_slopes.h"
 #include "sensor_sim/range_image.h"
 
 namespace nextview {
@@ -56,6 +57,10 @@ class NormalEstimator {
   /// All NaN where there is none.
   struct Step {
     std::vector<float> cosine, sine, inverse_sine;
+    AngleStep at(int i) const {
+      const auto n = static_cast<std::size_t>(i);
+      return {cosine[n], sine[n], inverse_sine[n]};
+    }
   };
   struct Axis {
     int stride = 1;

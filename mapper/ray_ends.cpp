@@ -2,96 +2,89 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+
+#include "mapper/vector_clones.h"
 
 namespace nextview {
 
 namespace {
 
+// Why a ray ends where it does.
+enum PixelKind : std::int32_t { kPoint = 0, kNoReturn = 1, kInvalid = 2 };
+
+// A row of pixels is worked on in runs that share an end; sums over this many points fit 32 bits.
+constexpr int kLongestRun = 1 << 16;
+
+NEXTVIEW_VECTOR_CLONES
+void follow_ranges(int columns, const float* __restrict range_m, double farthest_m, double clear_m,
+                   double* __restrict length_m, std::int32_t* __restrict kind) {
+#pragma omp simd
+  for (int u = 0; u < columns; ++u) {
+    const float d = range_m[u];
+    const bool is_finite = d <= std::numeric_limits<float>::max();
+    kind[u] = static_cast<std::int32_t>(!is_finite) + static_cast<std::int32_t>(d != d);
+    const double point_m =
+        static_cast<double>(d) < farthest_m ? static_cast<double>(d) : farthest_m;
+    const double followed_m = is_finite ? point_m : clear_m;
+    length_m[u] = d == d ? followed_m : 0.0;
+  }
+}
+
+// What eq. 1 and 2 need to know of one axis of the world.
+struct AxisOfPoints {
+  double rotation[3];  // the axis' row of world_from_sensor
+  double position_m;
+  double origin_m;
+  double voxel_size_m;
+};
+
+NEXTVIEW_VECTOR_CLONES
+void end_voxels(int columns, AxisOfPoints axis, const double* __restrict length_m,
+                const double* __restrict column_sin, const double* __restrict column_cos,
+                double row_sin, double row_cos, std::int32_t* __restrict end) {
+  const double half_m = 0.5 * axis.voxel_size_m;
+#pragma omp simd
+  for (int u = 0; u < columns; ++u) {
+    const double n_x = -column_sin[u];
+    const double n_y = column_cos[u] * row_cos;
+    const double n_z = column_cos[u] * row_sin;
+    const double direction =
+        axis.rotation[0] * n_x + axis.rotation[1] * n_y + axis.rotation[2] * n_z;
+    const double point = axis.position_m + length_m[u] * direction;  // eq. 1
+    const double x = point - axis.origin_m;
+    end[u] =
+        static_cast<std::int32_t>((x + std::copysign(half_m, x)) / axis.voxel_size_m);  // eq. 2
+  }
+}
+
+NEXTVIEW_VECTOR_CLONES
+void compare_neighbours(int columns, const std::int32_t* x, const std::int32_t* y,
+                        const std::int32_t* z, const std::int32_t* kind,
+                        std::int32_t* __restrict same_as_last) {
+  same_as_last[0] = 0;
+#pragma omp simd
+  for (int u = 1; u < columns; ++u) {
+    const std::int32_t difference =
+        (x[u] ^ x[u - 1]) | (y[u] ^ y[u - 1]) | (z[u] ^ z[u - 1]) | (kind[u] ^ kind[u - 1]);
+    same_as_last[u] = difference == 0;
+  }
+}
+
 // An end as a key: its voxel relative to the sensor's, 16 bits an axis, and whether it is a
 // surface. Ends lie within kFarthestVoxels of the sensor, so 16 bits hold them.
-constexpr int kAxisBits = 16;
-constexpr std::uint64_t kSurfaceBit = std::uint64_t{1} << (3 * kAxisBits);
-constexpr std::uint64_t kNoEnd = ~std::uint64_t{0};
-constexpr std::int32_t kBias = 1 << (kAxisBits - 1);
+constexpr std::uint64_t kNoKey = ~std::uint64_t{0};
 
-VoxelIndex displacement_of(std::uint64_t key) {
-  VoxelIndex displacement;
+std::uint64_t key_of(const VoxelIndex& displacement, bool is_surface) {
+  std::uint64_t key = is_surface ? 1 : 0;
   for (int axis = 0; axis < 3; ++axis) {
-    const auto bits = static_cast<std::int32_t>(key >> (axis * kAxisBits) & 0xffff);
-    displacement[axis] = bits - kBias;
+    key = key << 16 | static_cast<std::uint16_t>(displacement[axis]);
   }
-  return displacement;
+  return key;
 }
 
 std::size_t scramble(std::uint64_t key) {
-  const std::uint64_t product = key * 0x9e3779b97f4a7c15u;
-  return static_cast<std::size_t>(product >> 32);
-}
-
-// Eq. 1 and 2 along a row of pixels, in plain arrays of numbers.
-class RowOfPoints {
- public:
-  RowOfPoints(const RangeImage& image, const VoxelGrid& grid, const MapWindow& window)
-      : image_(image), grid_(grid), window_(window), sensor_(grid.voxel_of(image.position_m)) {
-    farthest_m_ = kFarthestVoxels * grid.voxel_size_m;
-    clear_m_ = std::min(image.limits.max_m, farthest_m_);
-  }
-
-  // Writes the key of every pixel of row v, and counts them.
-  void keys(int v, std::uint64_t* keys, PixelCounts& counts) const;
-
- private:
-  const RangeImage& image_;
-  const VoxelGrid& grid_;
-  const MapWindow& window_;
-  VoxelIndex sensor_;
-  double farthest_m_;  ///< where points farther away are taken to be
-  double clear_m_;     ///< how far a ray without return is believed free
-};
-
-void RowOfPoints::keys(int v, std::uint64_t* keys, PixelCounts& counts) const {
-  const RayTable& rays = image_.rays;
-  const int columns = rays.columns();
-  const float* const range = image_.range_m.data() + static_cast<std::ptrdiff_t>(v) * columns;
-  const double* const column_sin = rays.column_sin.data();
-  const double* const column_cos = rays.column_cos.data();
-  const double row_sin = rays.row_sin[static_cast<std::size_t>(v)];
-  const double row_cos = rays.row_cos[static_cast<std::size_t>(v)];
-  const Eigen::Matrix3d& r = image_.world_from_sensor;
-  std::int64_t surfaces = 0;
-  std::int64_t finite = 0;
-  std::int64_t no_returns = 0;
-  for (int u = 0; u < columns; ++u) {
-    const float d = range[u];
-    const bool is_finite = d <= std::numeric_limits<float>::max();
-    const bool is_no_return = d > std::numeric_limits<float>::max();
-    const double point_m = is_finite ? std::min(static_cast<double>(d), farthest_m_) : 0.0;
-    const double length_m = is_no_return ? clear_m_ : point_m;
-    const double n[3] = {-column_sin[u], column_cos[u] * row_cos, column_cos[u] * row_sin};
-    std::uint64_t key = 0;
-    bool inside = true;
-    for (int axis = 0; axis < 3; ++axis) {
-      const double direction = r(axis, 0) * n[0] + r(axis, 1) * n[1] + r(axis, 2) * n[2];
-      const double x = image_.position_m[axis] + length_m * direction;  // eq. 1
-      const double relative = x - grid_.origin_m[axis];
-      const double half = std::copysign(0.5 * grid_.voxel_size_m, relative);
-      const auto index =
-          static_cast<std::int32_t>((relative + half) / grid_.voxel_size_m);  // eq. 2
-      inside &= static_cast<std::uint32_t>(index - window_.min[axis]) <
-                static_cast<std::uint32_t>(window_.size[axis]);
-      key |= static_cast<std::uint64_t>(index - sensor_[axis] + kBias) << (axis * kAxisBits);
-    }
-    const bool is_surface = is_finite && inside;
-    key |= is_surface ? kSurfaceBit : 0;
-    keys[u] = is_finite || is_no_return ? key : kNoEnd;
-    surfaces += is_surface;
-    finite += is_finite;
-    no_returns += is_no_return;
-  }
-  counts.points += surfaces;
-  counts.points_outside += finite - surfaces;
-  counts.no_returns += no_returns;
-  counts.invalid += columns - finite - no_returns;
+  return static_cast<std::size_t>(key * 0x9e3779b97f4a7c15u >> 32);
 }
 
 }  // namespace
@@ -100,32 +93,79 @@ void RayEnds::collect(const RangeImage& image, const VoxelGrid& grid, const MapW
   sensor_ = grid.voxel_of(image.position_m);
   counts_ = {};
   ends_.clear();
-  clear_table();
-  const int columns = image.rays.columns();
-  key_row_.resize(static_cast<std::size_t>(columns));
-  const RowOfPoints points(image, grid, window);
+  for (const std::uint32_t place : used_) table_[place].key = kNoKey;
+  used_.clear();
+
   normals_.prepare(image);
+  const int columns = image.rays.columns();
   for (int v = 0; v < image.rays.rows(); ++v) {
-    points.keys(v, key_row_.data(), counts_);
+    find_ends(image, grid, v);
     normals_.row(v, normal_row_);
     for (int u = 0; u < columns;) {
-      const std::uint64_t key = key_row_[static_cast<std::size_t>(u)];
       const int begin = u;
       do {
         ++u;
-      } while (u < columns && key_row_[static_cast<std::size_t>(u)] == key);
-      if (key == kNoEnd) continue;
-      RayEnd& end = end_of(key);
-      if (end.is_surface) add_points(begin, u, end.seen);
+      } while (u < columns && u - begin < kLongestRun &&
+               row_.same_as_last[static_cast<std::size_t>(u)]);
+      add_run(begin, u, window);
     }
   }
 }
 
+void RayEnds::find_ends(const RangeImage& image, const VoxelGrid& grid, int v) {
+  const RayTable& rays = image.rays;
+  const int columns = rays.columns();
+  const auto size = static_cast<std::size_t>(columns);
+  row_.length_m.resize(size);
+  row_.kind.resize(size);
+  row_.same_as_last.resize(size);
+  const double farthest_m = kFarthestVoxels * grid.voxel_size_m;
+  follow_ranges(columns, image.range_m.data() + static_cast<std::size_t>(v) * size, farthest_m,
+                std::min(image.limits.max_m, farthest_m), row_.length_m.data(), row_.kind.data());
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const int a = static_cast<int>(axis);
+    const Eigen::Matrix3d& r = image.world_from_sensor;
+    row_.end[axis].resize(size);
+    end_voxels(
+        columns,
+        {{r(a, 0), r(a, 1), r(a, 2)}, image.position_m[a], grid.origin_m[a], grid.voxel_size_m},
+        row_.length_m.data(), rays.column_sin.data(), rays.column_cos.data(),
+        rays.row_sin[static_cast<std::size_t>(v)], rays.row_cos[static_cast<std::size_t>(v)],
+        row_.end[axis].data());
+  }
+  compare_neighbours(columns, row_.end[0].data(), row_.end[1].data(), row_.end[2].data(),
+                     row_.kind.data(), row_.same_as_last.data());
+}
+
+void RayEnds::add_run(int begin, int end, const MapWindow& window) {
+  const auto u = static_cast<std::size_t>(begin);
+  const std::int64_t pixels = end - begin;
+  const VoxelIndex voxel(row_.end[0][u], row_.end[1][u], row_.end[2][u]);
+  switch (static_cast<PixelKind>(row_.kind[u])) {
+    case kPoint:
+      if (window.contains(voxel)) {
+        counts_.points += pixels;
+        add_points(begin, end, end_at(voxel, true).seen);
+      } else {
+        counts_.points_outside += pixels;
+        end_at(voxel, false);
+      }
+      return;
+    case kNoReturn:
+      counts_.no_returns += pixels;
+      end_at(voxel, false);
+      return;
+    case kInvalid:
+      counts_.invalid += pixels;
+      return;
+  }
+}
+
 void RayEnds::add_points(int begin, int end, SurfaceVoxel& seen) const {
-  std::int64_t x = 0;
-  std::int64_t y = 0;
-  std::int64_t z = 0;
-  std::uint32_t count = 0;
+  std::int32_t x = 0;
+  std::int32_t y = 0;
+  std::int32_t z = 0;
+  std::int32_t count = 0;
   std::int32_t quality = 0;
   for (auto u = static_cast<std::size_t>(begin); u < static_cast<std::size_t>(end); ++u) {
     x += normal_row_.x[u];
@@ -137,18 +177,19 @@ void RayEnds::add_points(int begin, int end, SurfaceVoxel& seen) const {
   seen.normal_sum[0] += x;
   seen.normal_sum[1] += y;
   seen.normal_sum[2] += z;
-  seen.normal_count += count;
+  seen.normal_count += static_cast<std::uint32_t>(count);
   seen.quality = std::max(seen.quality, static_cast<std::uint16_t>(quality));
 }
 
-RayEnd& RayEnds::end_of(std::uint64_t key) {
+RayEnd& RayEnds::end_at(const VoxelIndex& voxel, bool is_surface) {
   if (2 * ends_.size() >= table_.size()) grow_table();
+  const std::uint64_t key = key_of(voxel - sensor_, is_surface);
   const std::size_t mask = table_.size() - 1;
   std::size_t place = scramble(key) & mask;
-  while (table_[place].key != kNoEnd && table_[place].key != key) place = (place + 1) & mask;
-  if (table_[place].key == kNoEnd) {
+  while (table_[place].key != kNoKey && table_[place].key != key) place = (place + 1) & mask;
+  if (table_[place].key == kNoKey) {
     table_[place] = {key, static_cast<std::uint32_t>(ends_.size())};
-    ends_.push_back({sensor_ + displacement_of(key), (key & kSurfaceBit) != 0, {}});
+    ends_.push_back({voxel, is_surface, {}});
     used_.push_back(static_cast<std::uint32_t>(place));
   }
   return ends_[table_[place].end];
@@ -156,27 +197,23 @@ RayEnd& RayEnds::end_of(std::uint64_t key) {
 
 void RayEnds::grow_table() {
   const std::vector<TableEntry> old = table_;
-  table_.assign(std::max<std::size_t>(1024, 2 * old.size()), {kNoEnd, 0});
+  table_.assign(std::max<std::size_t>(1024, 2 * old.size()), {kNoKey, 0});
   used_.clear();
   const std::size_t mask = table_.size() - 1;
   for (const TableEntry& entry : old) {
-    if (entry.key == kNoEnd) continue;
+    if (entry.key == kNoKey) continue;
     std::size_t place = scramble(entry.key) & mask;
-    while (table_[place].key != kNoEnd) place = (place + 1) & mask;
+    while (table_[place].key != kNoKey) place = (place + 1) & mask;
     table_[place] = entry;
     used_.push_back(static_cast<std::uint32_t>(place));
   }
 }
 
-void RayEnds::clear_table() {
-  for (const std::uint32_t place : used_) table_[place].key = kNoEnd;
-  used_.clear();
-}
-
 std::size_t RayEnds::memory_bytes() const {
-  return normals_.memory_bytes() + key_row_.capacity() * sizeof(std::uint64_t) +
-         4 * normal_row_.x.capacity() * sizeof(std::int32_t) + ends_.capacity() * sizeof(RayEnd) +
-         table_.capacity() * sizeof(TableEntry) + used_.capacity() * sizeof(std::uint32_t);
+  const std::size_t columns = row_.kind.capacity();
+  return normals_.memory_bytes() + columns * (sizeof(double) + 9 * sizeof(std::int32_t)) +
+         ends_.capacity() * sizeof(RayEnd) + table_.capacity() * sizeof(TableEntry) +
+         used_.capacity() * sizeof(std::uint32_t);
 }
 
 }  // namespace nextview

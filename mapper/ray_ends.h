@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -44,10 +45,19 @@ class RayEnds {
   std::size_t memory_bytes() const;
 
  private:
+  /// Of a row of pixels: how far each ray is followed, where it ends, and why there.
+  struct Row {
+    std::vector<double> length_m;
+    std::array<std::vector<std::int32_t>, 3> end;
+    std::vector<std::int32_t> kind;          ///< PixelKind
+    std::vector<std::int32_t> same_as_last;  ///< end and kind are those of the pixel before
+  };
+
+  void find_ends(const RangeImage& image, const VoxelGrid& grid, int v);
+  void add_run(int begin, int end, const MapWindow& window);
   void add_points(int begin, int end, SurfaceVoxel& seen) const;
-  RayEnd& end_of(std::uint64_t key);
+  RayEnd& end_at(const VoxelIndex& voxel, bool is_surface);
   void grow_table();
-  void clear_table();
 
   struct TableEntry {
     std::uint64_t key;
@@ -57,7 +67,7 @@ class RayEnds {
   VoxelIndex sensor_;
   NormalEstimator normals_;
   NormalRow normal_row_;
-  std::vector<std::uint64_t> key_row_;
+  Row row_;
   std::vector<RayEnd> ends_;
   std::vector<TableEntry> table_;    ///< open addressing by key; its size is a power of two
   std::vector<std::uint32_t> used_;  ///< places of the table in use

@@ -179,13 +179,14 @@ class PixelNeighbourhood {
     return relative_bend(row_slope(u, v, -1), row_slope(u, v, 1), range(u, v));
   }
   float chosen_row_slope(int u, int v) const {
-    const auto candidate = [&](int side) {
-      const int u_side = u + side * column_stride_;
-      const AngleStep step = column_step(u, side);
-      return SlopeCandidate{row_slope(u, v, side), row_bend(u_side, v),
-                            squared_step(range(u, v), range(u_side, v), step.cosine, step.sine)};
+    const auto step = [&](int side) {
+      const AngleStep angle = column_step(u, side);
+      return squared_step(range(u, v), range(u + side * column_stride_, v), angle.cosine,
+                          angle.sine);
     };
-    return choose_slope(candidate(-1), candidate(1), row_bend(u, v));
+    return choose_slope(row_slope(u, v, -1), row_slope(u, v, 1), row_bend(u, v),
+                        row_bend(u - column_stride_, v), row_bend(u + column_stride_, v), step(-1),
+                        step(1));
   }
 
   // The slope along the column, once the slope along the row is known.
@@ -200,13 +201,13 @@ class PixelNeighbourhood {
     return relative_bend(column_slope(u, v, -1), column_slope(u, v, 1), range(u, v));
   }
   float chosen_column_slope(int u, int v) const {
-    const auto candidate = [&](int side) {
-      const int v_side = v + side * row_stride_;
-      const AngleStep step = row_step(v, side);
-      return SlopeCandidate{column_slope(u, v, side), column_bend(u, v_side),
-                            squared_step(range(u, v), range(u, v_side), step.cosine, step.sine)};
+    const auto step = [&](int side) {
+      const AngleStep angle = row_step(v, side);
+      return squared_step(range(u, v), range(u, v + side * row_stride_), angle.cosine, angle.sine);
     };
-    return choose_slope(candidate(-1), candidate(1), column_bend(u, v));
+    return choose_slope(column_slope(u, v, -1), column_slope(u, v, 1), column_bend(u, v),
+                        column_bend(u, v - row_stride_), column_bend(u, v + row_stride_), step(-1),
+                        step(1));
   }
 
   float column_sin(int u) const {
