@@ -56,8 +56,9 @@ void check_range_image(const RangeImage& image, const VoxelGrid& grid, const Map
   if (!(limits.min_m >= 0.0 && limits.min_m < limits.max_m && std::isfinite(limits.max_m))) {
     refuse("its range limits");
   }
-  bool negative = false;
-  for (const float range_m : image.range_m) negative |= range_m < 0.0f;
+  int negative = 0;
+#pragma omp simd reduction(| : negative)
+  for (std::size_t n = 0; n < image.range_m.size(); ++n) negative |= image.range_m[n] < 0.0f;
   if (negative) refuse("a negative range");
 
   for (int axis = 0; axis < 3; ++axis) {

@@ -1,6 +1,8 @@
 #include "mapper/map_census.h"
 
+#include <algorithm>
 #include <cstring>
+#include <iterator>
 
 namespace nextview {
 
@@ -10,12 +12,12 @@ constexpr std::size_t kSide = MapBlocks::kSide;
 constexpr std::uint8_t kListed = 1 << 6;  // above the six bits for sides
 constexpr std::uint32_t kNumberMask = (std::uint32_t{1} << MapBlocks::kNumberBits) - 1;
 
+constexpr std::size_t kRow = 16;  // a vector register of bytes
+
 // The labels of a block and of one voxel around it, as bytes: row (y, z) holds the voxels
-// x = -1 ... 8 at [0] ... [9], and its length is that of a vector register.
+// x = -1 ... 8 at [0] ... [9].
 class Neighbourhood {
  public:
-  static constexpr std::size_t kRow = 16;
-
   Neighbourhood(std::span<const Label> labels, const std::array<MapBlocks::AxisSlots, 3>& slots) {
     const auto& [xs, ys, zs] = slots;
     const bool whole_row = xs[kSide] - xs[1] == kSide - 1 && xs[1] != MapBlocks::kOutside;
@@ -53,6 +55,61 @@ class Neighbourhood {
 };
 
 constexpr std::uint8_t byte(Label label) { return static_cast<std::uint8_t>(label); }
+
+// The kinds of things counted: voxels by label, then the faces of two labels that touch Empty.
+constexpr std::size_t kOccupiedFaces = kLabelCount;
+constexpr std::size_t kOcclusionPlaneFaces = kLabelCount + 1;
+constexpr std::size_t kKinds = kLabelCount + 2;
+
+// A row of labels or counts as the vector registers of all x86-64 and ARM machines hold it (GCC's
+// and clang's vector extension). A comparison gives 255 or 0 in every lane.
+using Lanes [[gnu::vector_size(kRow)]] = std::uint8_t;
+
+Lanes load(const std::uint8_t* row) {
+  Lanes lanes;
+  std::memcpy(&lanes, row, kRow);
+  return lanes;
+}
+
+Lanes equals(Lanes lanes, Label label) { return reinterpret_cast<Lanes>(lanes == byte(label)); }
+
+// Derives the occlusion planes of a block and counts it. The labels as they become are written to
+// now, rows as in the neighbourhood; counts are by kind, Unmarked ones left out.
+//
+// Lane x of a row is voxel x - 1; lanes 0 and 9 ... 15 are computed for nothing. A lane counts at
+// most 6 faces in each of 8 rows before its byte is emptied into a wider number.
+void look_at_block(const Neighbourhood& neighbourhood, std::uint8_t (&now)[kSide * kSide][kRow],
+                   std::uint16_t (&counts)[kKinds]) {
+  std::fill(std::begin(counts), std::end(counts), std::uint16_t{0});
+  for (std::size_t z = 0; z < kSide; ++z) {
+    Lanes tally[kKinds] = {};
+    for (std::size_t y = 0; y < kSide; ++y) {
+      const std::uint8_t* const here = neighbourhood.row(y, z);
+      Lanes faces = {};  // that touch an Empty voxel
+      for (const std::ptrdiff_t next :
+           {std::ptrdiff_t{1}, Neighbourhood::kNextY, Neighbourhood::kNextZ}) {
+        faces -= equals(load(here - next), Label::Empty) + equals(load(here + next), Label::Empty);
+      }
+      const Lanes was = load(here);
+      const Lanes hidden = equals(was, Label::Occluded) | equals(was, Label::OcclusionPlane) |
+                           equals(was, kFreshlyOccluded);
+      const Lanes open = reinterpret_cast<Lanes>(faces != 0);
+      const Lanes derived = (open & byte(Label::OcclusionPlane)) | (~open & byte(Label::Occluded));
+      const Lanes is = (hidden & derived) | (~hidden & was);
+      std::memcpy(now[z * kSide + y], &is, kRow);
+      for (std::uint8_t label = 1; label < kLabelCount; ++label) {
+        tally[label] -= equals(is, static_cast<Label>(label));
+      }
+      tally[kOccupiedFaces] += faces & equals(is, Label::Occupied);
+      tally[kOcclusionPlaneFaces] += faces & hidden;
+    }
+    for (std::size_t kind = 1; kind < kKinds; ++kind) {
+      for (std::size_t x = 1; x <= kSide; ++x) {
+        counts[kind] = static_cast<std::uint16_t>(counts[kind] + tally[kind][x]);
+      }
+    }
+  }
+}
 
 }  // namespace
 
@@ -103,67 +160,32 @@ std::span<const std::uint32_t> MapCensus::update(VoxelMap& map, const MapBlocks&
 
 MapCensus::Counts MapCensus::recount(VoxelMap& map, const MapBlocks& blocks, std::uint32_t block,
                                      std::vector<std::uint32_t>& changed_slots) {
-  constexpr std::size_t kRow = Neighbourhood::kRow;
   const auto slots = blocks.slots_around(block);
   const std::span<Label> labels = map.labels();
   const Neighbourhood neighbourhood(labels, slots);
+  std::uint8_t now[kSide * kSide][kRow];
+  std::uint16_t counted[kKinds];
+  look_at_block(neighbourhood, now, counted);
 
-  // Lane x of a row is its voxel x - 1; lanes 0 and 9 ... 15 are computed for nothing. A lane
-  // counts at most 6 faces x 8 rows before it is emptied, so bytes hold it.
-  std::array<std::array<std::uint16_t, kRow>, kLabelCount + 2> sums = {};
-  for (std::size_t z = 0; z < kSide; ++z) {
-    std::uint8_t tally[kLabelCount + 2][kRow] = {};
-    for (std::size_t y = 0; y < kSide; ++y) {
-      const std::uint8_t* const here = neighbourhood.row(y, z);
-      std::uint8_t now[kRow];
-      for (std::size_t x = 0; x < kRow; ++x) {
-        const auto empty = [&](std::ptrdiff_t to) {
-          return static_cast<std::uint8_t>(here[static_cast<std::ptrdiff_t>(x) + to] ==
-                                           byte(Label::Empty));
-        };
-        const auto faces = static_cast<std::uint8_t>(
-            empty(-1) + empty(1) + empty(-Neighbourhood::kNextY) + empty(Neighbourhood::kNextY) +
-            empty(-Neighbourhood::kNextZ) + empty(Neighbourhood::kNextZ));
-        const std::uint8_t was = here[x];
-        const bool hidden = was == byte(Label::Occluded) || was == byte(Label::OcclusionPlane) ||
-                            was == byte(kFreshlyOccluded);
-        const std::uint8_t derived =
-            faces > 0 ? byte(Label::OcclusionPlane) : byte(Label::Occluded);
-        now[x] = hidden ? derived : was;
-        for (std::uint8_t label = 1; label < kLabelCount; ++label) {
-          tally[label][x] = static_cast<std::uint8_t>(tally[label][x] + (now[x] == label));
-        }
-        tally[kLabelCount][x] = static_cast<std::uint8_t>(
-            tally[kLabelCount][x] + (was == byte(Label::Occupied) ? faces : 0));
-        tally[kLabelCount + 1][x] =
-            static_cast<std::uint8_t>(tally[kLabelCount + 1][x] + (hidden ? faces : 0));
-      }
-      if (std::memcmp(now + 1, here + 1, kSide) == 0) continue;
-      for (std::size_t x = 1; x <= kSide; ++x) {
-        if (now[x] == here[x]) continue;
-        const std::size_t slot = slots[0][x] + slots[1][y + 1] + slots[2][z + 1];
-        labels[slot] = static_cast<Label>(now[x]);
-        if (here[x] != byte(kFreshlyOccluded)) {
-          changed_slots.push_back(static_cast<std::uint32_t>(slot));
-        }
-      }
-    }
-    for (std::size_t kind = 1; kind < sums.size(); ++kind) {
-      for (std::size_t x = 0; x < kRow; ++x) {
-        sums[kind][x] = static_cast<std::uint16_t>(sums[kind][x] + tally[kind][x]);
+  for (std::size_t row = 0; row < kSide * kSide; ++row) {
+    const std::size_t y = row % kSide;
+    const std::size_t z = row / kSide;
+    const std::uint8_t* const was = neighbourhood.row(y, z);
+    if (std::memcmp(now[row] + 1, was + 1, kSide) == 0) continue;
+    for (std::size_t x = 1; x <= kSide; ++x) {
+      if (now[row][x] == was[x]) continue;
+      const std::size_t slot = slots[0][x] + slots[1][y + 1] + slots[2][z + 1];
+      labels[slot] = static_cast<Label>(now[row][x]);
+      if (was[x] != byte(kFreshlyOccluded)) {
+        changed_slots.push_back(static_cast<std::uint32_t>(slot));
       }
     }
   }
 
   Counts counts;
-  const auto total = [&](std::size_t kind) {
-    unsigned sum = 0;
-    for (std::size_t x = 1; x <= kSide; ++x) sum += sums[kind][x];
-    return static_cast<std::uint16_t>(sum);
-  };
-  for (std::size_t label = 1; label < kLabelCount; ++label) counts.voxels[label] = total(label);
-  counts.occupied_faces = total(kLabelCount);
-  counts.occlusion_plane_faces = total(kLabelCount + 1);
+  for (std::size_t label = 1; label < kLabelCount; ++label) counts.voxels[label] = counted[label];
+  counts.occupied_faces = counted[kOccupiedFaces];
+  counts.occlusion_plane_faces = counted[kOcclusionPlaneFaces];
   return counts;
 }
 

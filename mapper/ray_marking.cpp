@@ -1,5 +1,7 @@
 #include "mapper/ray_marking.h"
 
+#include <algorithm>
+
 #include "mapper/integer_line.h"
 #include "mapper/map_census.h"
 
@@ -7,57 +9,71 @@ namespace nextview {
 
 namespace {
 
-// IntegerLine::at in slots of the map: one fixed-point number per axis. Only the bits that the
-// axis' mask keeps matter, so the numbers may wrap.
+// IntegerLine::at in slots of the map: per axis the fixed-point position, shifted to where the
+// axis' bits of a slot are. Masked and shifted back, the three together are the slot; bits above
+// and below an axis' own do not matter, so the numbers may wrap.
 class SlotWalk {
  public:
   SlotWalk(const VoxelMap& map, const IntegerLine& line, int k) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const auto start = static_cast<std::uint32_t>(line.start[static_cast<int>(axis)])
-                         << IntegerLine::kFractionBits;
-      slope_[axis] = static_cast<std::uint32_t>(line.slope[axis]);
-      position_[axis] = start + static_cast<std::uint32_t>(IntegerLine::kHalf) +
-                        static_cast<std::uint32_t>(k) * slope_[axis];
-      mask_[axis] = static_cast<std::uint32_t>(map.sides()[axis] - 1);
-      shift_[axis] = map.shifts()[axis];
+      const std::int64_t start = line.start[static_cast<int>(axis)];
+      const std::int64_t slope = line.slope[axis];
+      const std::int64_t position =
+          start * (std::int64_t{1} << IntegerLine::kFractionBits) + IntegerLine::kHalf + k * slope;
+      const int shift = map.shifts()[axis];
+      position_[axis] = static_cast<std::uint64_t>(position) << shift;
+      slope_[axis] = static_cast<std::uint64_t>(slope) << shift;
+      mask_[axis] = static_cast<std::uint64_t>(map.sides()[axis] - 1)
+                    << (shift + IntegerLine::kFractionBits);
     }
   }
-  std::uint32_t slot() const { return part(0) | part(1) | part(2); }
+  std::uint32_t slot() const {
+    const std::uint64_t bits =
+        (position_[0] & mask_[0]) | (position_[1] & mask_[1]) | (position_[2] & mask_[2]);
+    return static_cast<std::uint32_t>(bits >> IntegerLine::kFractionBits);
+  }
   void step() {
     for (std::size_t axis = 0; axis < 3; ++axis) position_[axis] += slope_[axis];
   }
 
  private:
-  std::uint32_t part(std::size_t axis) const {
-    return (position_[axis] >> IntegerLine::kFractionBits & mask_[axis]) << shift_[axis];
-  }
-
-  std::uint32_t position_[3];
-  std::uint32_t slope_[3];
-  std::uint32_t mask_[3];
-  int shift_[3];
+  std::uint64_t position_[3];
+  std::uint64_t slope_[3];
+  std::uint64_t mask_[3];
 };
 
-// Raises the voxels k = first ... last of a line that are below a label to a new one.
-void raise(VoxelMap& map, const IntegerLine& line, int first, int last, Label below, Label to,
-           std::vector<std::uint32_t>& changed_slots) {
-  if (last < first) return;
-  Label* const labels = map.labels().data();
-  const std::size_t before = changed_slots.size();
-  changed_slots.resize(before + static_cast<std::size_t>(last - first + 1));
-  std::uint32_t* changed = changed_slots.data() + before;
-  SlotWalk walk(map, line, first);
-  for (int k = first; k <= last; ++k) {
-    const std::uint32_t slot = walk.slot();
-    const Label label = labels[slot];
-    const bool raised = label < below;
-    labels[slot] = raised ? to : label;
-    *changed = slot;
-    changed += raised;
-    walk.step();
+// Raises labels along lines, and remembers what has changed.
+class Marker {
+ public:
+  Marker(VoxelMap& map, std::vector<std::uint32_t>& changed_slots)
+      : map_(map), changed_slots_(changed_slots) {
+    line_changes_.resize(static_cast<std::size_t>(map.window().size.maxCoeff()) + 1);
   }
-  changed_slots.resize(static_cast<std::size_t>(changed - changed_slots.data()));
-}
+
+  // Raises the voxels k = first ... last of a line that are below a label to a new one. They must
+  // lie inside the window.
+  void raise(const IntegerLine& line, int first, int last, Label below, Label to) {
+    Label* const labels = map_.labels().data();
+    std::uint32_t* const changes = line_changes_.data();
+    std::size_t count = 0;
+    SlotWalk walk(map_, line, first);
+    for (int k = first; k <= last; ++k) {
+      const std::uint32_t slot = walk.slot();
+      const Label label = labels[slot];
+      const bool raised = label < below;
+      labels[slot] = raised ? to : label;
+      changes[count] = slot;  // overwritten by the next one unless this counts
+      count += raised;
+      walk.step();
+    }
+    changed_slots_.insert(changed_slots_.end(), changes, changes + count);
+  }
+
+ private:
+  VoxelMap& map_;
+  std::vector<std::uint32_t>& changed_slots_;
+  std::vector<std::uint32_t> line_changes_;
+};
 
 struct EndLine {
   IntegerLine line;
@@ -70,6 +86,7 @@ struct EndLine {
 std::int64_t mark_rays(VoxelMap& map, const VoxelIndex& sensor, std::span<const RayEnd> ends,
                        std::vector<std::uint32_t>& changed_slots) {
   const std::size_t before = changed_slots.size();
+  Marker marker(map, changed_slots);
   std::vector<EndLine> lines;
   lines.reserve(ends.size());
   for (const RayEnd& end : ends) {
@@ -79,21 +96,19 @@ std::int64_t mark_rays(VoxelMap& map, const VoxelIndex& sensor, std::span<const 
 
   for (const EndLine& end : lines) {
     if (!end.is_surface) continue;
-    raise(map, end.line, end.line.steps, end.line.steps, Label::Occupied, Label::Occupied,
-          changed_slots);
+    marker.raise(end.line, end.line.steps, end.line.steps, Label::Occupied, Label::Occupied);
   }
   const auto newly_occupied = static_cast<std::int64_t>(changed_slots.size() - before);
 
   for (const EndLine& end : lines) {
     const int last_free =
         end.is_surface ? end.line.steps - 1 : std::min(end.line.steps, end.inside);
-    raise(map, end.line, 0, last_free, Label::Empty, Label::Empty, changed_slots);
+    marker.raise(end.line, 0, last_free, Label::Empty, Label::Empty);
   }
   for (const EndLine& end : lines) {
     // A line without steps has no direction to be carried on in.
     if (!end.is_surface || end.line.steps == 0) continue;
-    raise(map, end.line, end.line.steps + 1, end.inside, Label::Occluded, kFreshlyOccluded,
-          changed_slots);
+    marker.raise(end.line, end.line.steps + 1, end.inside, Label::Occluded, kFreshlyOccluded);
   }
   return newly_occupied;
 }
