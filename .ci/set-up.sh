@@ -1,0 +1,73 @@
+# Sourced by ./run, ./replay and ./test: installs what is missing and builds. Needs `root` set to the
+# folder of the sources. When nothing is to be done it takes a fraction of a second and says nothing.
+
+build="$root/build/release"
+
+fail() {
+  echo "$*" >&2
+  exit 1
+}
+
+# install_missing LIST...: the packages of these lists, of which as a rule all are there.
+install_missing() {
+  local packages missing
+  mapfile -t packages < <(grep -hv '^#' "${@/#/$root/.ci/}")
+  if ! command -v dpkg-query > /dev/null; then
+    return  # not Debian: cmake says what it does not find
+  fi
+  mapfile -t missing < <(comm -23 <(printf '%s\n' "${packages[@]}" | sort) \
+    <(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${packages[@]}" 2> /dev/null |
+      sed -n 's/^installed //p' | sort))
+  if [ "${#missing[@]}" = 0 ]; then
+    return
+  fi
+  local as_root=()
+  if [ "$(id -u)" != 0 ]; then
+    command -v sudo > /dev/null ||
+      fail "Packages are missing. As root, type: apt-get install ${missing[*]}"
+    as_root=(sudo)
+  fi
+  echo "Installing ${missing[*]}"
+  "${as_root[@]}" apt-get -qq update &&
+    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
+      apt-get -qq install --no-install-recommends "${missing[@]}" > "$install_log" 2>&1 || {
+    cat "$install_log" >&2
+    fail "Packages could not be installed. Type: apt-get install ${missing[*]}"
+  }
+}
+install_log=$(mktemp)
+trap 'rm -f "$install_log"' EXIT
+
+# configure [OPTION...]: unless it has been done with these options.
+configure() {
+  local options=("$@")
+  if command -v ccache > /dev/null; then
+    options+=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
+  fi
+  local done_with="$build/configured-with"
+  if [ -e "$build/build.ninja" ] && [ "$(cat "$done_with" 2> /dev/null)" = "${options[*]}" ]; then
+    return
+  fi
+  (cd "$root" && cmake --preset release "${options[@]}" > "$install_log" 2>&1) || {
+    cat "$install_log" >&2
+    fail "cmake failed"
+  }
+  echo "${options[*]}" > "$done_with"
+}
+
+# build_target TARGET: says nothing when it is up to date.
+build_target() {
+  if ninja -C "$build" -n "$1" 2> /dev/null | grep -q 'no work to do'; then
+    return
+  fi
+  echo "Building nextview in $build (the first time takes some minutes)"
+  ninja -C "$build" "$1" || fail "The build failed."
+}
+
+# set_up_programs: what ./run and ./replay need.
+set_up_programs() {
+  install_missing packages-to-run
+  # A folder configured for the tests will do as well.
+  [ -e "$build/build.ninja" ] || configure -DNEXTVIEW_TESTS=OFF
+  build_target programs
+}
