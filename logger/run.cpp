@@ -105,6 +105,15 @@ void Run::add(const Message& message) {
   last_progress_ = Clock::now();
 }
 
+template <class Condition>
+void Run::pump_until(const Condition& condition) {
+  Reminder reminder{milliseconds(5)};
+  while (!condition()) {
+    if (reminder.due()) bus_->request<status_t>(0, 0);
+    pump(milliseconds(5));
+  }
+}
+
 void Run::start_up() {
   lcm_url_ = options_.lcm_url;
   if (const char* url = std::getenv("LCM_DEFAULT_URL"); lcm_url_.empty() && url != nullptr) {
@@ -122,23 +131,28 @@ void Run::start_up() {
   // Nothing is known about a run before its configuration is, so the run starts with it: not before
   // all processes have asked for it, and requests are seen to arrive in the log.
   last_progress_ = Clock::now();
-  Reminder probe{milliseconds(5)};
-  const auto all_there = [this] {
-    if (!log_ && std::filesystem::exists(files_.log)) {
-      log_.emplace(files_.log, setup_.config.run, RangeImages::OnlyCount);
-    }
-    if (log_) log_->read_on();
-    return log_ && log_->counters().ours > 0 &&
-           asked_for_config_.size() == RunProcesses::roles().size();
-  };
-  while (!all_there()) {
-    if (probe.due()) bus_->request<status_t>(0, 0);
-    pump(milliseconds(5));
-  }
+  const std::set<std::string> answering(RunProcesses::answering_roles().begin(),
+                                        RunProcesses::answering_roles().end());
+  pump_until([&] { return recording() && asked_for_config_ == answering; });
   record_.add(setup_.config);
   bus_->publish(setup_.config);
   last_progress_ = Clock::now();
+  start_scoring();
+  // Each says so when it has loaded what it needs; only then is there somebody to hear a goal.
+  pump_until([&] { return fresh_statuses_ == answering; });
+  processes_->start_planner();
+  last_progress_ = Clock::now();
+}
 
+bool Run::recording() {
+  if (!log_ && std::filesystem::exists(files_.log)) {
+    log_.emplace(files_.log, setup_.config.run, RangeImages::OnlyCount);
+  }
+  if (log_) log_->read_on();
+  return log_ && log_->counters().ours > 0;
+}
+
+void Run::start_scoring() {
   std::promise<VisibleSurface> promise;
   visible_coming_ = promise.get_future();
   scoring_ = std::jthread([scene = setup_.scene, config = setup_.config,
@@ -207,7 +221,8 @@ void Run::collect_statuses() {
   bus_->request<status_t>(0, 0);
   // Only for the summary, so a process that does not answer is not waited for very long.
   const auto until = Clock::now() + milliseconds(1000);
-  while (fresh_statuses_.size() < RunProcesses::roles().size() && Clock::now() < until) {
+  const std::size_t roles = RunProcesses::answering_roles().size() + 1;  // and the planner
+  while (fresh_statuses_.size() < roles && Clock::now() < until) {
     pump(milliseconds(5));
     if (reminder.due()) bus_->request<status_t>(0, 0);
   }
@@ -244,7 +259,10 @@ FinishedRun Run::finish(Clock::time_point program_start) {
   FinishedRun run;
   if (processes_) {
     processes_->end_all();
-    for (const std::string& line : processes_->take_lines()) progress_.say(line);
+    const auto lines = processes_->take_lines();  // lcm-logger says goodbye
+    if (options_.verbose) {
+      for (const std::string& line : lines) progress_.say(line);
+    }
     run.peak_memory_bytes = processes_->peak_memory_bytes();
   }
   rusage usage{};
@@ -310,11 +328,14 @@ std::string Run::waited_for() const {
       " for " + std::to_string(std::lround(options_.patience_s)) + " s (--patience)";
   if (!record_.config()) {
     std::string who;
-    for (const std::string& role : RunProcesses::roles()) {
+    for (const std::string& role : RunProcesses::answering_roles()) {
       if (!asked_for_config_.contains(role)) who += (who.empty() ? "" : ", ") + role;
     }
     if (who.empty()) who = "lcm-logger, which has recorded nothing";
     return "nothing was heard of " + who + for_so_long;
+  }
+  for (const std::string& role : RunProcesses::answering_roles()) {
+    if (!statuses_.contains(role)) return role + " did not get ready" + for_so_long;
   }
   const int view = record_.latest_view();
   int attempt = 0;

@@ -46,12 +46,16 @@ class Run {
 
   void subscribe();
   void start_up();
+  bool recording();
+  void start_scoring();
   void watch();
   void complete_log();
   void collect_statuses();
   void end_early(const EndsEarly& end);
   FinishedRun finish(Clock::time_point program_start);
 
+  template <class Condition>
+  void pump_until(const Condition& condition);
   void pump(std::chrono::milliseconds timeout);
   void check_on_processes();
   template <class Message>

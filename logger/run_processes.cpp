@@ -3,6 +3,7 @@
 #include <signal.h>
 
 #include <system_error>
+#include <utility>
 
 #include "logger/run_setup.h"
 
@@ -13,32 +14,40 @@ constexpr double kPatience_s = 5.0;
 
 }  // namespace
 
-const std::vector<std::string>& RunProcesses::roles() {
-  static const std::vector<std::string> all = {"planner", "base_sim", "sensor_sim", "mapper"};
+const std::vector<std::string>& RunProcesses::answering_roles() {
+  static const std::vector<std::string> all = {"base_sim", "sensor_sim", "mapper"};
   return all;
 }
 
-RunProcesses::RunProcesses(const std::string& lcm_url, std::int64_t run,
-                           const std::filesystem::path& log) {
+RunProcesses::RunProcesses(std::string lcm_url, std::int64_t run, const std::filesystem::path& log)
+    : lcm_url_(std::move(lcm_url)), run_(run) {
   const auto recorder = find_in_path("lcm-logger");
   if (!recorder) {
     throw SetupError("lcm-logger is not in PATH: type apt-get install liblcm-bin");
   }
-  const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  // Written out with every message that comes a millisecond after the one before: what is read back
+  // at the end must be there.
   try {
-    // Written out with every message that comes a millisecond after the one before: what is read
-    // back at the end must be there.
     children_.emplace_back("lcm-logger",
                            std::vector<std::string>{*recorder, "--quiet", "--flush-interval=1",
-                                                    "--lcm-url=" + lcm_url, log.string()},
+                                                    "--lcm-url=" + lcm_url_, log.string()},
                            AtParentsDeath::Terminate);
-    for (const std::string& role : roles()) {
-      children_.emplace_back(
-          role,
-          std::vector<std::string>{(folder / ("nextview_" + role)).string(), "--lcm-url=" + lcm_url,
-                                   "--run=" + std::to_string(run)},
-          AtParentsDeath::Kill);
-    }
+  } catch (const std::system_error& error) {
+    throw SetupError(error.what());
+  }
+  for (const std::string& role : answering_roles()) start(role);
+}
+
+void RunProcesses::start_planner() { start("planner"); }
+
+void RunProcesses::start(const std::string& role) {
+  const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
+  try {
+    children_.emplace_back(
+        role,
+        std::vector<std::string>{(folder / ("nextview_" + role)).string(), "--lcm-url=" + lcm_url_,
+                                 "--run=" + std::to_string(run_)},
+        AtParentsDeath::Kill);
   } catch (const std::system_error& error) {
     throw SetupError(std::string(error.what()) + ": build nextview again");
   }

@@ -14,13 +14,18 @@ namespace nextview {
 /// The processes of a run and its recorder.
 class RunProcesses {
  public:
-  /// Roles of the four processes, in the order of one range image's way.
-  static const std::vector<std::string>& roles();
+  /// Roles of the processes that answer the planner, in the order in which they do.
+  static const std::vector<std::string>& answering_roles();
 
-  /// Starts lcm-logger, which must be in PATH, and the four processes, which lie beside this
-  /// program's own executable.
+  /// Starts lcm-logger, which must be in PATH, and the processes that answer the planner, which lie
+  /// beside this program's own executable.
   /// @throws SetupError saying what cannot be started and what to do
-  RunProcesses(const std::string& lcm_url, std::int64_t run, const std::filesystem::path& log);
+  RunProcesses(std::string lcm_url, std::int64_t run, const std::filesystem::path& log);
+
+  /// Starts the planner, and with it the run: when the others are ready, so that its first goal
+  /// need not be asked for again.
+  /// @throws SetupError likewise
+  void start_planner();
 
   /// Who has ended though it should not have, how, and its last words; nothing when all run.
   std::optional<std::string> casualty();
@@ -36,7 +41,11 @@ class RunProcesses {
   std::map<std::string, std::int64_t> peak_memory_bytes() const;
 
  private:
-  std::vector<ChildProcess> children_;  // the recorder first
+  void start(const std::string& role);
+
+  std::string lcm_url_;
+  std::int64_t run_;
+  std::vector<ChildProcess> children_;  // the recorder first, the planner last
 };
 
 }  // namespace nextview
