@@ -1,25 +1,11 @@
 #include "bench/exploration.h"
 
-#include <chrono>
 #include <numbers>
 
+#include "bench/stopwatch.h"
 #include "sensor_sim/scan.h"
 
 namespace nextview {
-
-namespace {
-
-using Clock = std::chrono::steady_clock;
-
-// Runs something and says how long it took.
-template <class F>
-double timed_s(F&& f) {
-  const auto start = Clock::now();
-  f();
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-}  // namespace
 
 TiltedLineScan sensor_for(double voxel_size_m) {
   if (voxel_size_m >= 0.10) return TiltedLineScan::paper();
@@ -42,13 +28,13 @@ ViewCost Exploration::step(ViewPredictor& predictor) {
   RandomStream no_noise(parameters_.seed, view_, 1, RandomPurpose::RangeNoise);
   image_ = scan(scene_.scene, rays_, RangeLimits(), pose_, 0.0, no_noise);
   const FoldReport* report = nullptr;
-  cost.fold_s = timed_s([&] { report = &builder_.fold(image_); });
-  cost.digest_s = timed_s([&] { builder_.digest(); });
+  cost.fold_s = wall_s([&] { report = &builder_.fold(image_); });
+  cost.digest_s = wall_s([&] { builder_.digest(); });
   const VoxelMap& map = builder_.map();
   cost.field_s =
-      timed_s([&] { predictor.map_changed(map, report->changed_slots, report->updated_surfaces); });
+      wall_s([&] { predictor.map_changed(map, report->changed_slots, report->updated_surfaces); });
   std::optional<Decision> decision;
-  cost.decision_s = timed_s([&] {
+  cost.decision_s = wall_s([&] {
     decision = decide_next_view(map, predictor, parameters_.planner, pose_, parameters_.seed,
                                 view_ + 1, 1, {});
   });

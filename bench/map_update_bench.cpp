@@ -3,7 +3,6 @@
 // world; for ours the range image) is made beforehand.
 
 #include <benchmark/benchmark.h>
-#include <time.h>
 
 #include <cmath>
 #include <memory>
@@ -12,6 +11,7 @@
 #include "bench/octomap_map.h"
 #include "bench/openvdb_map.h"
 #include "bench/recovered_room.h"
+#include "bench/stopwatch.h"
 #include "bench/textbook_map.h"
 #include "mapper/map_builder.h"
 #include "mapper/ray_ends.h"
@@ -21,13 +21,6 @@
 namespace nextview {
 
 namespace {
-
-// All of these work in one thread: its own time, whatever else the machine does.
-double thread_s() {
-  timespec now;
-  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
-  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
-}
 
 // The room's scans as points, for those who start from points.
 struct PointScan {
@@ -56,9 +49,9 @@ benchmark::internal::Benchmark* register_update(const std::string& name, const R
              [&room, make, insert](benchmark::State& state) {
                for (auto _ : state) {
                  auto map = make();
-                 const double start_s = thread_s();
-                 for (std::size_t i = 0; i < room.scans().size(); ++i) insert(*map, i);
-                 state.SetIterationTime(thread_s() - start_s);
+                 state.SetIterationTime(thread_s([&] {
+                   for (std::size_t i = 0; i < room.scans().size(); ++i) insert(*map, i);
+                 }));
                }
                state.SetItemsProcessed(state.iterations() * pixels(room));
              })
@@ -172,10 +165,10 @@ void register_explored(const RecoveredRoom& room, int rooms_before, bool with_di
           double elapsed_s = 0.0;
           for (const RangeImage& image : room.scans()) {
             const RangeImage there = moved(image, 0, kRoomsPerSide);
-            const double start_s = thread_s();
-            map.fold(there);
-            if (with_digest) benchmark::DoNotOptimize(map.digest());
-            elapsed_s += thread_s() - start_s;
+            elapsed_s += thread_s([&] {
+              map.fold(there);
+              if (with_digest) benchmark::DoNotOptimize(map.digest());
+            });
           }
           state.SetIterationTime(elapsed_s);
         }
