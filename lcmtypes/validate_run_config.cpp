@@ -72,6 +72,11 @@ void check_planner(Checks& checks, const run_config_t& config) {
   checks.within("use_quality", config.use_quality, 0, 1);
   checks.within("quality_threshold", config.quality_threshold, 0.0, 1.0);
   checks.not_negative("clearance_m", config.clearance_m);
+  checks.not_negative("departure_m", config.departure_m);
+  checks.require(config.directions == 20 || config.directions == 80 || config.directions == 320 ||
+                     config.directions == 1280,
+                 "directions is not 20, 80, 320 or 1280");
+  checks.within("threads", config.threads, 1, 256);
   checks.positive("step_min_m", config.step_min_m);
   checks.positive("step_max_m", config.step_max_m);
   checks.require(config.step_min_m <= config.step_max_m, "step_min_m is above step_max_m");

@@ -186,6 +186,21 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
       ->check(number_in(0.0, 100.0))
       ->capture_default_str()
       ->group(group);
+  app.add_option("--departure", options.departure_m,
+                 "Unknown space this near to where the sensor stands does not hold it back, m")
+      ->check(number_in(0.0, 5.0))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--directions", options.directions,
+                 "Orientations tried at every position: 20, 80, 320 or 1280")
+      ->check(CLI::IsMember({20, 80, 320, 1280}))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--threads", options.threads,
+                 "Threads the planner may use; the result does not depend on it")
+      ->check(number_in(1, 256))
+      ->capture_default_str()
+      ->group(group);
   app.add_option("--step-min", options.step_min_m,
                  "Least distance of the first simplex's vertices from the sensor, m")
       ->check(length_m())
@@ -201,7 +216,7 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
       ->capture_default_str()
       ->group(group);
   app.add_option("--max-evaluations", options.max_evaluations,
-                 "... or after this many positions, each in all 20 orientations")
+                 "... or after this many positions, each in all orientations")
       ->check(number_in(4, 1200))
       ->capture_default_str()
       ->group(group);

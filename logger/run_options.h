@@ -46,6 +46,9 @@ struct RunOptions {
   int margin_voxels = 1;
 
   double clearance_m = FeasibilityParameters{}.clearance_m;
+  double departure_m = FeasibilityParameters{}.departure_m;
+  int directions = 20;
+  int threads = 1;
   double step_min_m = PlannerParameters{}.step_min_m;
   double step_max_m = PlannerParameters{}.step_max_m;
   double fitness_tolerance = PlannerParameters{}.fitness_tolerance;

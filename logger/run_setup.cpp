@@ -142,6 +142,9 @@ void fill_planner(run_config_t& config, const RunOptions& options) {
   config.use_quality = options.quality ? 1 : 0;
   config.quality_threshold = options.quality_threshold;
   config.clearance_m = options.clearance_m;
+  config.departure_m = options.departure_m;
+  config.directions = options.directions;
+  config.threads = options.threads;
   config.step_min_m = options.step_min_m;
   config.step_max_m = options.step_max_m;
   config.fitness_tolerance = options.fitness_tolerance;

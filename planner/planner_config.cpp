@@ -2,6 +2,7 @@
 
 #include "planner/fast_view_predictor.h"
 #include "planner/orientations.h"
+#include "planner/panorama_view_predictor.h"
 #include "sensor_sim/sensor_config.h"
 
 namespace nextview {
@@ -15,6 +16,7 @@ PlannerParameters planner_parameters_of(const run_config_t& config) {
   parameters.max_evaluations = config.max_evaluations;
   parameters.feasibility.clearance_m = config.clearance_m;
   parameters.feasibility.body_radius_m = config.body_radius_m;
+  parameters.feasibility.departure_m = config.departure_m;
   parameters.feasibility.workspace_min_m = Eigen::Vector3d(config.workspace_min_m);
   parameters.feasibility.workspace_max_m = Eigen::Vector3d(config.workspace_max_m);
   parameters.feasibility.lift_min_m = config.lift_min_m;
@@ -31,9 +33,17 @@ StopParameters stop_parameters_of(const run_config_t& config) {
 }
 
 std::unique_ptr<ViewPredictor> make_predictor(const run_config_t& config) {
-  return std::make_unique<FastViewPredictor>(
-      prediction_raster(sensor_of(config), range_limits_of(config)), config.voxel_size_m,
-      icosahedron_orientations(), config.use_quality != 0);
+  const PredictionRaster raster = prediction_raster(sensor_of(config), range_limits_of(config));
+  int subdivisions = 0;
+  for (int faces = 20; faces < config.directions; faces *= 4) ++subdivisions;
+  std::vector<Orientation> orientations = icosahedron_orientations(subdivisions);
+  const bool use_quality = config.use_quality != 0;
+  if (subdivisions > 0 && !use_quality) {
+    return std::make_unique<PanoramaViewPredictor>(raster, config.voxel_size_m,
+                                                   std::move(orientations));
+  }
+  return std::make_unique<FastViewPredictor>(raster, config.voxel_size_m, std::move(orientations),
+                                             use_quality, config.threads);
 }
 
 SensorPose start_pose_of(const run_config_t& config) {

@@ -13,7 +13,8 @@ namespace nextview {
 PlannerParameters planner_parameters_of(const run_config_t& config);
 StopParameters stop_parameters_of(const run_config_t& config);
 
-/// The predictor a run's views are evaluated with.
+/// The predictor a run's views are evaluated with: every ray of every orientation, or with more
+/// than 20 orientations and quality off one panorama that answers them all.
 std::unique_ptr<ViewPredictor> make_predictor(const run_config_t& config);
 
 /// The pose of view 1.

@@ -38,6 +38,9 @@ run_config_t example() {
   config.max_attempts = 20;
   config.quality_threshold = 0.8;
   config.clearance_m = 0.4;
+  config.departure_m = 0.8;
+  config.directions = 20;
+  config.threads = 1;
   config.step_min_m = 0.3;
   config.step_max_m = 1.5;
   config.fitness_tolerance = 0.01;

@@ -165,6 +165,8 @@ TEST(Validate, RunConfig) {
       {"no attempts", [](run_config_t& m) { m.max_attempts = 0; }},
       {"threshold above 1", [](run_config_t& m) { m.quality_threshold = 1.5; }},
       {"steps the wrong way round", [](run_config_t& m) { m.step_min_m = 2.0; }},
+      {"no face of the icosahedron", [](run_config_t& m) { m.directions = 30; }},
+      {"no thread", [](run_config_t& m) { m.threads = 0; }},
       {"too few evaluations", [](run_config_t& m) { m.max_evaluations = 3; }},
       {"more evaluations than a message holds", [](run_config_t& m) { m.max_evaluations = 2000; }},
       {"up is down", [](run_config_t& m) { m.scene_up = "down"; }},
