@@ -1,6 +1,7 @@
 #include "mapper/ray_ends.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -83,8 +84,10 @@ std::uint64_t key_of(const VoxelIndex& displacement, bool is_surface) {
   return key;
 }
 
-std::size_t scramble(std::uint64_t key) {
-  return static_cast<std::size_t>(key * 0x9e3779b97f4a7c15u >> 32);
+// Where a key belongs in a table of a power of two of places: the top bits of its product with the
+// golden ratio.
+std::size_t first_place(std::uint64_t key, std::size_t places) {
+  return static_cast<std::size_t>(key * 0x9e3779b97f4a7c15u >> (64 - std::countr_zero(places)));
 }
 
 }  // namespace
@@ -185,7 +188,7 @@ RayEnd& RayEnds::end_at(const VoxelIndex& voxel, bool is_surface) {
   if (2 * ends_.size() >= table_.size()) grow_table();
   const std::uint64_t key = key_of(voxel - sensor_, is_surface);
   const std::size_t mask = table_.size() - 1;
-  std::size_t place = scramble(key) & mask;
+  std::size_t place = first_place(key, table_.size());
   while (table_[place].key != kNoKey && table_[place].key != key) place = (place + 1) & mask;
   if (table_[place].key == kNoKey) {
     table_[place] = {key, static_cast<std::uint32_t>(ends_.size())};
@@ -202,7 +205,7 @@ void RayEnds::grow_table() {
   const std::size_t mask = table_.size() - 1;
   for (const TableEntry& entry : old) {
     if (entry.key == kNoKey) continue;
-    std::size_t place = scramble(entry.key) & mask;
+    std::size_t place = first_place(entry.key, table_.size());
     while (table_[place].key != kNoKey) place = (place + 1) & mask;
     table_[place] = entry;
     used_.push_back(static_cast<std::uint32_t>(place));
