@@ -111,7 +111,10 @@ void FastViewPredictor::map_changed(const VoxelMap& map,
     return;
   }
   field_->update(map, changed_slots);
-  if (counts_quality()) surfaces_.update(map, *field_, updated_surfaces);
+  if (!counts_quality()) return;
+  // A voxel may become Occupied by points that had no normal, and so without surface data.
+  surfaces_.update(map, *field_, changed_slots);
+  surfaces_.update(map, *field_, updated_surfaces);
 }
 
 void FastViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
