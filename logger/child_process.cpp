@@ -110,6 +110,7 @@ void ChildProcess::terminate(double patience_s) {
   if (!running()) return;
   const FileDescriptor process(static_cast<int>(::syscall(SYS_pidfd_open, pid_, 0)));
   ::kill(pid_, SIGTERM);
+  ::kill(pid_, SIGCONT);  // a process that somebody has stopped would never notice
   // Its output is read meanwhile, or it might wait for room to write its last words.
   for (double waited_s = 0.0; running() && waited_s < patience_s; waited_s += 0.05) {
     pollfd wait{process.get(), POLLIN, 0};

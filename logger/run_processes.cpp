@@ -10,7 +10,7 @@
 namespace nextview {
 namespace {
 
-constexpr double kPatience_s = 5.0;
+constexpr double kPatience_s = 2.0;
 
 }  // namespace
 
