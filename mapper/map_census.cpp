@@ -147,6 +147,8 @@ void MapCensus::look_at_neighbours(const MapBlocks& blocks) {
 std::span<const std::uint32_t> MapCensus::update(VoxelMap& map, const MapBlocks& blocks,
                                                  std::vector<std::uint32_t>& changed_slots) {
   look_at_neighbours(blocks);
+  // Blocks next to each other along x share cache lines.
+  std::sort(to_look_.begin(), to_look_.end());
   for (const std::uint32_t block : to_look_) {
     add(counts_[block], -1);
     counts_[block] = recount(map, blocks, block, changed_slots);

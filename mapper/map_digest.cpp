@@ -2,6 +2,8 @@
 
 #include <xxhash.h>
 
+#include <algorithm>
+#include <array>
 #include <memory>
 #include <new>
 #include <type_traits>
@@ -39,35 +41,44 @@ void put_surface(const SurfaceVoxel* surface, BlockBytes& bytes) {
   bytes.put(voxel.quality);
 }
 
+// The labels of a block as bytes, x fastest; Unmarked where it sticks out of the window.
+using BlockLabels = std::array<std::uint8_t, MapBlocks::kVoxels>;
+
+BlockLabels labels_of(const VoxelMap& map, const MapBlocks& blocks, std::uint32_t block) {
+  constexpr std::size_t kSide = MapBlocks::kSide;
+  BlockLabels bytes = {};
+  const auto [xs, ys, zs] = blocks.slots_around(block);
+  for (std::size_t row = 0; row < kSide * kSide; ++row) {
+    const std::size_t y = ys[1 + row % kSide];
+    const std::size_t z = zs[1 + row / kSide];
+    if (y == MapBlocks::kOutside || z == MapBlocks::kOutside) continue;
+    const Label* const from = map.labels().data() + y + z;
+    for (std::size_t x = 0; x < kSide; ++x) {
+      const std::size_t slot = xs[1 + x];
+      if (slot != MapBlocks::kOutside) {
+        bytes[row * kSide + x] = static_cast<std::uint8_t>(from[slot]);
+      }
+    }
+  }
+  return bytes;
+}
+
 // Writes a block's content; false when all of it is Unmarked.
 bool serialise(const VoxelMap& map, const MapBlocks& blocks, std::uint32_t block,
                BlockBytes& bytes) {
-  constexpr std::size_t kSide = MapBlocks::kSide;
+  const BlockLabels labels = labels_of(map, blocks, block);
+  static constexpr BlockLabels kAllUnmarked = {};
+  if (labels == kAllUnmarked) return false;
+
   const VoxelIndex coordinate = blocks.coordinate(block);
   for (int axis = 0; axis < 3; ++axis) bytes.put(static_cast<std::int32_t>(coordinate[axis]));
-
-  const auto slots = blocks.slots_around(block);
-  const std::span<const Label> labels = map.labels();
-  std::uint16_t occupied[MapBlocks::kVoxels];
-  std::size_t occupied_count = 0;
-  bool any_marked = false;
-  for (std::size_t v = 0; v < MapBlocks::kVoxels; ++v) {
-    const std::size_t x = slots[0][1 + v % kSide];
-    const std::size_t y = slots[1][1 + v / kSide % kSide];
-    const std::size_t z = slots[2][1 + v / (kSide * kSide)];
-    const bool inside =
-        x != MapBlocks::kOutside && y != MapBlocks::kOutside && z != MapBlocks::kOutside;
-    const Label label = inside ? labels[x + y + z] : Label::Unmarked;
-    bytes.put(static_cast<std::uint8_t>(label));
-    any_marked |= label != Label::Unmarked;
-    if (label == Label::Occupied) occupied[occupied_count++] = static_cast<std::uint16_t>(v);
-  }
-  for (std::size_t n = 0; n < occupied_count; ++n) {
-    const int v = occupied[n];
+  for (const std::uint8_t label : labels) bytes.put(label);
+  for (int v = 0; v < MapBlocks::kVoxels; ++v) {
+    if (labels[static_cast<std::size_t>(v)] != static_cast<std::uint8_t>(Label::Occupied)) continue;
     const VoxelIndex offset(v % 8, v / 8 % 8, v / 64);
     put_surface(map.surface(MapBlocks::kSide * coordinate + offset), bytes);
   }
-  return any_marked;
+  return true;
 }
 
 using Hash = std::array<unsigned char, 16>;
@@ -98,6 +109,8 @@ MapDigest::MapDigest(const MapBlocks& blocks)
     : hashes_(blocks.size()), present_(blocks.size(), 0), stale_(blocks.size(), 0) {}
 
 std::string MapDigest::digest(const VoxelMap& map, const MapBlocks& blocks) {
+  // Blocks next to each other along x share cache lines.
+  std::sort(to_hash_.begin(), to_hash_.end());
   for (const std::uint32_t block : to_hash_) {
     BlockBytes bytes;
     present_[block] = serialise(map, blocks, block, bytes) ? 1 : 0;
