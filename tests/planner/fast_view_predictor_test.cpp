@@ -149,6 +149,31 @@ TEST(FastViewPredictor, FollowsChangesOfTheMap) {
   }
 }
 
+TEST(FastViewPredictor, KnowsOccupiedVoxelsWithoutSurfaceData) {
+  // Points without a normal make a voxel Occupied and leave no surface data.
+  VoxelMap map({kVoxelSize, Eigen::Vector3d::Zero()}, {VoxelIndex::Zero(), VoxelIndex(12, 12, 12)});
+  std::fill(map.labels().begin(), map.labels().end(), Label::Empty);
+  const PredictionRaster raster = small_raster(16, 8, std::numbers::pi / 3.0, 30.0);
+  PlainViewPredictor plain(raster, kVoxelSize, icosahedron_orientations(), true);
+  FastViewPredictor fast(raster, kVoxelSize, icosahedron_orientations(), true);
+  fast.map_changed(map, {}, {});
+  std::vector<std::uint32_t> changed;
+  for (int i = 0; i < 12; ++i) {
+    for (int k = 0; k < 12; ++k) {
+      map.set_label({i, 11, k}, Label::Occupied);
+      changed.push_back(static_cast<std::uint32_t>(map.slot({i, 11, k})));
+    }
+  }
+  fast.map_changed(map, changed, {});
+  std::vector<ViewCounts> expected(20);
+  std::vector<ViewCounts> counts(20);
+  plain.predict(map, VoxelIndex(6, 3, 6), expected);
+  fast.predict(map, VoxelIndex(6, 3, 6), counts);
+  EXPECT_EQ(counts, expected);
+  EXPECT_TRUE(std::any_of(counts.begin(), counts.end(),
+                          [](const ViewCounts& view) { return view.occupied_voxels > 20; }));
+}
+
 TEST(FastViewPredictor, SaysWhatItCannotDo) {
   const PredictionRaster raster = small_raster(4, 4, 1.0, 30.0);
   EXPECT_THROW(FastViewPredictor(raster, kVoxelSize, {}, false), std::invalid_argument);
