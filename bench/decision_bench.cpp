@@ -215,6 +215,26 @@ bool same_decision(const std::optional<Decision>& a, const std::optional<Decisio
          a->evaluations == b->evaluations;
 }
 
+// A predictor that has followed the map from the first view on must decide like one that reads it.
+void compare_followed_map(const RecordedRun& run, double voxel_size_m, bool quality,
+                          Agreement& with_plain) {
+  constexpr std::size_t kViews = 12;
+  MapBuilder builder({voxel_size_m}, run.window);
+  const auto followed = fast_predictor(voxel_size_m, quality, 1);
+  PlainViewPredictor plain(paper_raster(), voxel_size_m, icosahedron_orientations(), quality);
+  PlannerParameters parameters;
+  parameters.use_quality = quality;
+  for (std::size_t i = 0; i < kViews; ++i) {
+    const FoldReport& report = builder.fold(run.images[i]);
+    followed->map_changed(builder.map(), report.changed_slots, report.updated_surfaces);
+    const auto decide_by = [&](ViewPredictor& predictor) {
+      return decide_next_view(builder.map(), predictor, parameters, run.images[i].pose, 1,
+                              static_cast<int>(i) + 2, 1, {});
+    };
+    with_plain.compare(same_decision(decide_by(*followed), decide_by(plain)));
+  }
+}
+
 void register_moment(const std::shared_ptr<Moment>& moment, Agreement& with_plain) {
   const double voxel_size_m = moment->voxel_size_m;
   for (const bool quality : {false, true}) {
@@ -254,6 +274,9 @@ void register_decision(const BenchOptions& options) {
       const auto run = std::make_shared<RecordedRun>(record_run(scene, voxel_size_m, views));
       Agreement with_plain("decision/" + name + "/" + size_name(voxel_size_m) +
                            " nextview = plain");
+      for (const bool quality : {false, true}) {
+        compare_followed_map(*run, voxel_size_m, quality, with_plain);
+      }
       for (const int after : {3, 10, 30}) {
         register_moment(moment_after(*run, name, voxel_size_m, after), with_plain);
       }
