@@ -17,8 +17,11 @@
 namespace nextview {
 namespace {
 
-// The shapes of a file's nodes: triangles whose corners are in the world frame, metres.
-using Corners = std::vector<Eigen::Vector3d>;
+// The shapes of a file's nodes: vertices in the world frame, metres, and three of them a triangle.
+struct Shapes {
+  std::vector<Eigen::Vector3f> vertices_m;
+  std::vector<std::uint32_t> corners;
+};
 
 Eigen::Matrix4d matrix(const aiMatrix4x4& m) {
   Eigen::Matrix4d result;
@@ -74,7 +77,13 @@ Eigen::Matrix4d world_from_root(const aiScene& scene, const std::string& reader,
 }
 
 void add_mesh(const aiMesh& mesh, const Eigen::Matrix4d& world_from_mesh,
-              const std::filesystem::path& file, Corners& corners) {
+              const std::filesystem::path& file, Shapes& shapes) {
+  const auto first = static_cast<std::uint32_t>(shapes.vertices_m.size());
+  for (unsigned int i = 0; i < mesh.mNumVertices; ++i) {
+    const aiVector3D& p = mesh.mVertices[i];
+    const Eigen::Vector4d vertex_m = world_from_mesh * Eigen::Vector4d(p.x, p.y, p.z, 1.0);
+    shapes.vertices_m.push_back(vertex_m.head<3>().cast<float>());
+  }
   for (unsigned int i = 0; i < mesh.mNumFaces; ++i) {
     const aiFace& face = mesh.mFaces[i];
     if (face.mNumIndices != 3) {
@@ -86,21 +95,20 @@ void add_mesh(const aiMesh& mesh, const Eigen::Matrix4d& world_from_mesh,
                          std::to_string(face.mIndices[k]) + " of " +
                          std::to_string(mesh.mNumVertices) + "; export the file again");
       }
-      const aiVector3D& p = mesh.mVertices[face.mIndices[k]];
-      corners.push_back((world_from_mesh * Eigen::Vector4d(p.x, p.y, p.z, 1.0)).head<3>());
+      shapes.corners.push_back(first + face.mIndices[k]);
     }
   }
 }
 
 // Depth first in the file's order; a mesh that several nodes name appears once for each.
 void add_node(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& world_from_parent,
-              const std::filesystem::path& file, Corners& corners) {
+              const std::filesystem::path& file, Shapes& shapes) {
   const Eigen::Matrix4d world_from_node = world_from_parent * matrix(node.mTransformation);
   for (unsigned int i = 0; i < node.mNumMeshes; ++i) {
-    add_mesh(*scene.mMeshes[node.mMeshes[i]], world_from_node, file, corners);
+    add_mesh(*scene.mMeshes[node.mMeshes[i]], world_from_node, file, shapes);
   }
   for (unsigned int i = 0; i < node.mNumChildren; ++i) {
-    add_node(scene, *node.mChildren[i], world_from_node, file, corners);
+    add_node(scene, *node.mChildren[i], world_from_node, file, shapes);
   }
 }
 
@@ -144,27 +152,32 @@ bool has_no_area(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen
   return ab.cross(ac).norm() <= 1e-7 * longest_squared;
 }
 
-TriangleMesh tidy_mesh(const Corners& corners, const std::filesystem::path& file) {
-  VertexTable vertices(corners.size() / 4);
+TriangleMesh tidy_mesh(const Shapes& shapes, const std::filesystem::path& file) {
+  constexpr std::uint32_t kNoNumber = 0xffffffff;
+  VertexTable vertices(shapes.vertices_m.size());
+  // Looked up once for each vertex of the file, of which most triangles share theirs.
+  std::vector<std::uint32_t> number(shapes.vertices_m.size(), kNoNumber);
   std::unordered_set<std::array<std::uint32_t, 3>, BytesHash> seen;
-  seen.reserve(corners.size() / 3);
+  seen.reserve(shapes.corners.size() / 3);
   TriangleMesh mesh;
-  for (std::size_t i = 0; i < corners.size(); i += 3) {
-    std::array<Eigen::Vector3f, 3> corner;
-    for (std::size_t k = 0; k < 3; ++k) {
-      corner[k] = corners[i + k].cast<float>();
-      if (!corner[k].allFinite()) {
-        throw SceneError(file.string() + ": triangle " + std::to_string(i / 3) +
-                         " has a coordinate that is not finite; repair the file, or check the "
-                         "unit if one was given");
-      }
+  for (std::size_t i = 0; i < shapes.corners.size(); i += 3) {
+    const std::uint32_t* corner = &shapes.corners[i];
+    const auto vertex = [&](std::size_t k) -> const Eigen::Vector3f& {
+      return shapes.vertices_m[corner[k]];
+    };
+    if (!vertex(0).allFinite() || !vertex(1).allFinite() || !vertex(2).allFinite()) {
+      throw SceneError(file.string() + ": triangle " + std::to_string(i / 3) +
+                       " has a coordinate that is not finite; repair the file, or check the "
+                       "unit if one was given");
     }
-    if (has_no_area(corner[0], corner[1], corner[2])) {
+    if (has_no_area(vertex(0), vertex(1), vertex(2))) {
       continue;
     }
     std::array<std::uint32_t, 3> triangle;
     for (std::size_t k = 0; k < 3; ++k) {
-      triangle[k] = vertices.number_of(corner[k]);
+      std::uint32_t& known = number[corner[k]];
+      if (known == kNoNumber) known = vertices.number_of(vertex(k));
+      triangle[k] = known;
     }
     std::array<std::uint32_t, 3> sorted = triangle;
     std::sort(sorted.begin(), sorted.end());
@@ -202,10 +215,10 @@ TriangleMesh load_mesh(const std::filesystem::path& file, const SceneOptions& op
                      "or glTF");
   }
 
-  Corners corners;
+  Shapes shapes;
   add_node(*scene, *scene->mRootNode, world_from_root(*scene, reader_name(importer), options), file,
-           corners);
-  TriangleMesh mesh = tidy_mesh(corners, file);
+           shapes);
+  TriangleMesh mesh = tidy_mesh(shapes, file);
   if (mesh.triangles.empty()) {
     throw SceneError(file.string() +
                      ": has no triangles with an area; export the surfaces as polygons");
