@@ -9,17 +9,7 @@
 namespace nextview {
 namespace {
 
-/// A shadow counts only this far (radians, and metres beyond its plane) inside its edge: more than
-/// the rounding of a ray cast in float, so that casting every ray would say the same.
-constexpr double kShadowMargin = 1e-5;
-
 double squared(double value) { return value * value; }
-
-/// The least of normal·q over a box.
-double least_along(const Eigen::Vector3d& normal, const Eigen::Vector3d& center,
-                   const Eigen::Vector3d& half_sides) {
-  return normal.dot(center) - normal.cwiseAbs().dot(half_sides);
-}
 
 }  // namespace
 
@@ -34,9 +24,12 @@ std::optional<std::uint32_t> hidden_by(const Scene& scene, const Eigen::Vector3d
   return hit->triangle;
 }
 
-PositionTree::PositionTree(const Scene& scene, std::vector<Eigen::Vector3d> positions,
-                           double range_max_m)
-    : scene_(&scene), positions_(std::move(positions)), range_max_m_(range_max_m) {
+PositionTree::PositionTree(const Scene& scene, const TriangleNeighbours& neighbours,
+                           std::vector<Eigen::Vector3d> positions, double range_max_m)
+    : scene_(&scene),
+      positions_(std::move(positions)),
+      range_max_m_(range_max_m),
+      shadow_(neighbours) {
   if (positions_.empty()) throw std::invalid_argument("position tree: no positions");
   std::vector<std::int32_t> order(positions_.size());
   std::iota(order.begin(), order.end(), 0);
@@ -80,9 +73,10 @@ bool PositionTree::node_sees(std::int32_t at, const Eigen::Vector3d& point_m,
                              std::optional<Blocked> known) {
   Node& node = nodes_[static_cast<std::size_t>(at)];
   if (node.box.squaredExteriorDistance(point_m) > squared(range_max_m_)) return false;
-  if (node.last_shadow && shadows(*node.last_shadow, point_m, node.box)) return false;
-
   const Eigen::Vector3d& position = positions_[static_cast<std::size_t>(node.representative)];
+  if (node.last_shadow && shadow_.hides(*node.last_shadow, point_m, position, node.box)) {
+    return false;
+  }
   if (!known || known->position != node.representative) {
     const auto triangle = hidden_by(*scene_, point_m, position);
     if (!triangle && (position - point_m).norm() <= range_max_m_) {
@@ -92,7 +86,7 @@ bool PositionTree::node_sees(std::int32_t at, const Eigen::Vector3d& point_m,
     known.reset();
     if (triangle) known = Blocked{node.representative, *triangle};
   }
-  if (known && shadows(known->triangle, point_m, node.box)) {
+  if (known && shadow_.hides(known->triangle, point_m, position, node.box)) {
     node.last_shadow = known->triangle;
     return false;
   }
@@ -106,35 +100,6 @@ bool PositionTree::node_sees(std::int32_t at, const Eigen::Vector3d& point_m,
     std::swap(children.first, children.second);
   }
   return node_sees(children.first, point_m, known) || node_sees(children.second, point_m, known);
-}
-
-bool PositionTree::shadows(std::uint32_t triangle, const Eigen::Vector3d& point_m,
-                           const Eigen::AlignedBox3d& box) const {
-  const TriangleMesh& mesh = scene_->mesh();
-  const Eigen::Vector3d a = mesh.corner_m(triangle, 0) - point_m;
-  const Eigen::Vector3d b = mesh.corner_m(triangle, 1) - point_m;
-  const Eigen::Vector3d c = mesh.corner_m(triangle, 2) - point_m;
-  const Eigen::Vector3d center = box.center() - point_m;
-  const Eigen::Vector3d half_sides = 0.5 * box.sizes();
-
-  const Eigen::Vector3d normal = (b - a).cross(c - a);
-  const double normal_length = normal.norm();
-  const double side = normal.dot(a) < 0.0 ? -1.0 : 1.0;
-  const double plane = side * normal.dot(a);
-  // A triangle in the gap where rays start is not met by all of them.
-  if (plane <= (kLineOfSightGap_m + kShadowMargin) * normal_length) return false;
-  if (least_along(side * normal, center, half_sides) - plane <= kShadowMargin * normal_length) {
-    return false;
-  }
-  const double farthest_m = center.norm() + half_sides.norm();
-  for (const auto& [from, to] : {std::pair{&a, &b}, std::pair{&b, &c}, std::pair{&c, &a}}) {
-    const Eigen::Vector3d edge_normal = side * from->cross(*to);
-    if (least_along(edge_normal, center, half_sides) <=
-        kShadowMargin * farthest_m * edge_normal.norm()) {
-      return false;
-    }
-  }
-  return true;
 }
 
 }  // namespace nextview

@@ -5,12 +5,10 @@
 #include <optional>
 #include <vector>
 
+#include "logger/surface_shadow.h"
 #include "sensor_sim/scene.h"
 
 namespace nextview {
-
-/// Rays to a surface point start this far off it, so that the surface does not hide its own points.
-constexpr double kLineOfSightGap_m = 0.001;
 
 /// The triangle that hides a surface point from a position, or nothing when it can be seen: the
 /// definition of visibility, which the plain twin in the tests uses one pair at a time.
@@ -37,7 +35,8 @@ class PositionTree {
   /// @param range_max_m positions farther away see nothing
   /// The scene must outlive the tree.
   /// @throws std::invalid_argument when there are no positions
-  PositionTree(const Scene& scene, std::vector<Eigen::Vector3d> positions, double range_max_m);
+  PositionTree(const Scene& scene, const TriangleNeighbours& neighbours,
+               std::vector<Eigen::Vector3d> positions, double range_max_m);
 
   /// Whether some position sees the point. Not const: it remembers what hid the last points.
   bool sees(const Eigen::Vector3d& point_m);
@@ -58,12 +57,11 @@ class PositionTree {
 
   std::int32_t build(std::int32_t* begin, std::int32_t* end);
   bool node_sees(std::int32_t at, const Eigen::Vector3d& point_m, std::optional<Blocked> known);
-  bool shadows(std::uint32_t triangle, const Eigen::Vector3d& point_m,
-               const Eigen::AlignedBox3d& box) const;
 
   const Scene* scene_;
   std::vector<Eigen::Vector3d> positions_;
   double range_max_m_;
+  SurfaceShadow shadow_;
   std::vector<Node> nodes_;
   std::int32_t root_;
   std::int32_t last_seen_from_ = 0;

@@ -41,20 +41,26 @@ TEST(PositionTree, SeesOverAWallOnlyFromHighEnough) {
   add_box(mesh, {2.0, 0.0, 0.0}, {2.1, 4.0, 1.0});
   const Scene scene(mesh);
   const Eigen::Vector3d point(3.1, 2.0, 0.0);
-  EXPECT_FALSE(PositionTree(scene, {{1.0, 2.0, 1.8}, {1.0, 2.0, 1.0}}, kFar_m).sees(point));
-  EXPECT_TRUE(PositionTree(scene, {{1.0, 2.0, 2.2}, {1.0, 2.0, 1.0}}, kFar_m).sees(point));
+  const TriangleNeighbours neighbours(scene.mesh());
+  const auto sees = [&](double z) {
+    return PositionTree(scene, neighbours, {{1.0, 2.0, z}, {1.0, 2.0, 1.0}}, kFar_m).sees(point);
+  };
+  EXPECT_FALSE(sees(1.8));
+  EXPECT_TRUE(sees(2.2));
 }
 
 TEST(PositionTree, SeesNothingOutOfRange) {
   const Scene scene(room({6.0, 4.0, 4.0}));
+  const TriangleNeighbours neighbours(scene.mesh());
   const std::vector<Eigen::Vector3d> positions = {{1.0, 2.0, 2.0}};
-  EXPECT_TRUE(PositionTree(scene, positions, 5.01).sees({6.0, 2.0, 2.0}));
-  EXPECT_FALSE(PositionTree(scene, positions, 4.99).sees({6.0, 2.0, 2.0}));
+  EXPECT_TRUE(PositionTree(scene, neighbours, positions, 5.01).sees({6.0, 2.0, 2.0}));
+  EXPECT_FALSE(PositionTree(scene, neighbours, positions, 4.99).sees({6.0, 2.0, 2.0}));
 }
 
 TEST(PositionTree, RefusesToBeEmpty) {
   const Scene scene(room({1.0, 1.0, 1.0}));
-  EXPECT_THROW(PositionTree(scene, {}, kFar_m), std::invalid_argument);
+  const TriangleNeighbours neighbours(scene.mesh());
+  EXPECT_THROW(PositionTree(scene, neighbours, {}, kFar_m), std::invalid_argument);
 }
 
 TEST(PositionTree, AgreesWithThePlainTwinOnRandomRooms) {
@@ -87,7 +93,8 @@ TEST(PositionTree, AgreesWithThePlainTwinOnRandomRooms) {
       positions.push_back(random_point(random, corner, corner + 0.3 * size));
     }
     const double range_max_m = world % 2 == 0 ? kFar_m : 2.0;
-    PositionTree tree(scene, positions, range_max_m);
+    const TriangleNeighbours neighbours(scene.mesh());
+    PositionTree tree(scene, neighbours, positions, range_max_m);
     for (const Eigen::Vector3f& sample : sample_surface(mesh, 3.0)) {
       const Eigen::Vector3d point = sample.cast<double>();
       const bool expected = any_sees(scene, positions, range_max_m, point);
