@@ -37,7 +37,12 @@ std::optional<LoggedMessage> LogReader::next() {
   if (std::fseek(file_->log->f, file_->end_of_last, SEEK_SET) != 0) return std::nullopt;
   lcm_eventlog_event_t* event = lcm_eventlog_read_next_event(file_->log);
   if (event == nullptr) return std::nullopt;
-  file_->end_of_last = std::ftell(file_->log->f);
+  // LCM looks at the sync word of the next message, and forgets to go back when it is half written.
+  constexpr long kHeaderBytes = 28;
+  constexpr long kSyncWordBytes = 4;
+  const long end = file_->end_of_last + kHeaderBytes + event->channellen + event->datalen;
+  const long position = std::ftell(file_->log->f);
+  file_->end_of_last = position - end < kSyncWordBytes ? end : position;
   LoggedMessage message;
   message.channel = event->channel;
   const auto* bytes = static_cast<const std::uint8_t*>(event->data);
