@@ -1,0 +1,111 @@
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "tests/system/program.h"
+
+namespace nextview {
+namespace {
+
+/// A run that would go on for long, past its third view.
+class LongRun : public testing::Test {
+ protected:
+  void start(const std::vector<std::string>& more = {}) {
+    std::vector<std::string> arguments = {"--stop-window", "100000"};
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    run_.emplace(run_arguments(folder_ / "run", 100000, arguments));
+    ASSERT_TRUE(run_->wait_for("view   3/")) << run_->output();
+    children_ = run_->children();
+    ASSERT_EQ(children_.size(), 5u) << "four processes and the recorder";
+  }
+
+  void expect_nothing_left() {
+    for (const pid_t pid : children_) wait_until_gone(pid);
+  }
+
+  void expect_readable_log(const std::string& stop_reason) {
+    const Outcome replay = replay_folder(folder_ / "run");
+    EXPECT_EQ(replay.status, 0) << replay.output;
+    EXPECT_NE(replay.output.find(stop_reason), std::string::npos) << replay.output;
+    std::ifstream file(folder_ / "run" / "summary.json");
+    EXPECT_EQ(nlohmann::json::parse(file).at("stop_reason"), stop_reason);
+  }
+
+  TemporaryFolder folder_;
+  std::optional<Program> run_;
+  std::vector<pid_t> children_;
+};
+
+TEST_F(LongRun, EndsCleanlyOnSigint) {
+  start();
+  run_->signal(SIGINT);
+  EXPECT_EQ(run_->wait(), 130) << run_->output();
+  expect_nothing_left();
+  expect_readable_log("interrupted");
+}
+
+TEST_F(LongRun, EndsCleanlyOnSigterm) {
+  start();
+  run_->signal(SIGTERM);
+  EXPECT_EQ(run_->wait(), 143) << run_->output();
+  expect_nothing_left();
+  expect_readable_log("interrupted");
+}
+
+TEST_F(LongRun, LeavesNothingBehindWhenItIsKilled) {
+  start();
+  run_->signal(SIGKILL);
+  run_->wait();
+  expect_nothing_left();
+  const Outcome replay = replay_folder(folder_ / "run");
+  EXPECT_EQ(replay.status, 1);
+  EXPECT_NE(replay.output.find("the log"), std::string::npos) << replay.output;
+}
+
+TEST_F(LongRun, SaysWhichProcessDied) {
+  for (const std::string role : {"sensor_sim", "base_sim", "mapper", "planner"}) {
+    start();
+    ASSERT_NE(run_->child(role), 0) << role;
+    ::kill(run_->child(role), SIGKILL);
+    EXPECT_EQ(run_->wait(), 6) << run_->output();
+    EXPECT_NE(run_->output().find(role + " was killed by signal 9"), std::string::npos)
+        << run_->output();
+    expect_nothing_left();
+    expect_readable_log("process_died");
+    std::filesystem::remove_all(folder_ / "run");
+  }
+}
+
+TEST_F(LongRun, SaysThatTheRecorderDied) {
+  start();
+  ::kill(run_->child("lcm-logger"), SIGKILL);
+  EXPECT_EQ(run_->wait(), 6) << run_->output();
+  EXPECT_NE(run_->output().find("lcm-logger was killed by signal 9"), std::string::npos)
+      << run_->output();
+  expect_nothing_left();
+}
+
+TEST_F(LongRun, SaysWhomItWaitsFor) {
+  struct Case {
+    std::string role;
+    std::string words;
+  };
+  for (const Case& silent :
+       {Case{"base_sim", "base_sim did not answer the goal"},
+        Case{"sensor_sim", "sensor_sim sent no range image"},
+        Case{"mapper", "the mapper did not commit"}, Case{"planner", "the planner gave no goal"}}) {
+    start({"--patience", "1"});
+    ASSERT_NE(run_->child(silent.role), 0) << silent.role;
+    ::kill(run_->child(silent.role), SIGSTOP);
+    EXPECT_EQ(run_->wait(), 5) << run_->output();
+    EXPECT_NE(run_->output().find(silent.words), std::string::npos) << run_->output();
+    expect_nothing_left();
+    expect_readable_log("no_answer");
+    std::filesystem::remove_all(folder_ / "run");
+  }
+}
+
+}  // namespace
+}  // namespace nextview

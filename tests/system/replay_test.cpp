@@ -1,0 +1,184 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <functional>
+#include <lcm/lcm-cpp.hpp>
+
+#include "lcmtypes/decode.h"
+#include "tests/system/program.h"
+
+namespace nextview {
+namespace {
+
+/// What becomes of a logged message: it may be changed, or left out (false).
+using Tamper = std::function<bool(lcm::LogEvent& event, std::vector<std::uint8_t>& bytes)>;
+
+/// The log of a short run, and copies of it that somebody has tampered with.
+class RecordedRun : public testing::Test {
+ protected:
+  void SetUp() override { ASSERT_EQ(run_views(folder_ / "run", 6).status, 0); }
+
+  std::filesystem::path tampered(const Tamper& tamper) {
+    std::filesystem::create_directories(folder_ / "tampered");
+    lcm::LogFile from((folder_ / "run" / "run.lcmlog").string(), "r");
+    lcm::LogFile to((folder_ / "tampered" / "run.lcmlog").string(), "w");
+    while (const lcm::LogEvent* read = from.readNextEvent()) {
+      lcm::LogEvent event = *read;
+      const auto* data = static_cast<const std::uint8_t*>(read->data);
+      std::vector<std::uint8_t> bytes(data, data + read->datalen);
+      if (!tamper(event, bytes)) continue;
+      event.data = bytes.data();
+      event.datalen = static_cast<int>(bytes.size());
+      to.writeEvent(&event);
+    }
+    return folder_ / "tampered";
+  }
+
+  template <class Message>
+  static bool is_view(const lcm::LogEvent& event, const std::vector<std::uint8_t>& bytes,
+                      int view) {
+    if (event.channel != Channel<Message>::name) return false;
+    return decode_checked<Message>(bytes).message.value().view == view;
+  }
+
+  static void expect_disagreement(const Outcome& replay, const std::string& words) {
+    EXPECT_EQ(replay.status, 1) << replay.output;
+    EXPECT_NE(replay.output.find(words), std::string::npos) << replay.output;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(RecordedRun, Agrees) {
+  const Outcome replay = replay_folder(folder_ / "run");
+  EXPECT_EQ(replay.status, 0) << replay.output;
+  EXPECT_NE(replay.output.find("6 views replayed"), std::string::npos) << replay.output;
+}
+
+TEST_F(RecordedRun, AgreesWithThePlannerToo) {
+  const Outcome replay = replay_folder(folder_ / "run", {"--planner"});
+  EXPECT_EQ(replay.status, 0) << replay.output;
+  EXPECT_NE(replay.output.find("5 goals decided again, every one the same"), std::string::npos)
+      << replay.output;
+}
+
+TEST_F(RecordedRun, AgreesWhenMessagesCameTwice) {
+  std::filesystem::create_directories(folder_ / "twice");
+  lcm::LogFile from((folder_ / "run" / "run.lcmlog").string(), "r");
+  {
+    lcm::LogFile to((folder_ / "twice" / "run.lcmlog").string(), "w");
+    while (const lcm::LogEvent* read = from.readNextEvent()) {
+      lcm::LogEvent event = *read;
+      to.writeEvent(&event);
+      to.writeEvent(&event);
+    }
+  }
+  EXPECT_EQ(replay_folder(folder_ / "twice").status, 0);
+}
+
+TEST_F(RecordedRun, ARangeThatWasChangedIsFound) {
+  const auto folder = tampered([](lcm::LogEvent& event, std::vector<std::uint8_t>& bytes) {
+    if (is_view<range_image_t>(event, bytes, 4)) {
+      range_image_t image = *decode_checked<range_image_t>(bytes).message;
+      for (float& range_m : image.range_m) range_m *= 0.5F;
+      bytes = encode(image);
+    }
+    return true;
+  });
+  expect_disagreement(replay_folder(folder), "view 4: the map rebuilt has digest ");
+}
+
+TEST_F(RecordedRun, AMessageLeftOutIsFound) {
+  const auto without_commit = tampered([](lcm::LogEvent& event, std::vector<std::uint8_t>& bytes) {
+    return !is_view<commit_t>(event, bytes, 3);
+  });
+  expect_disagreement(replay_folder(without_commit), "view 3: the log lacks NEXTVIEW_COMMIT");
+  const auto without_image = tampered([](lcm::LogEvent& event, std::vector<std::uint8_t>& bytes) {
+    return !is_view<range_image_t>(event, bytes, 2);
+  });
+  expect_disagreement(replay_folder(without_image), "view 2: the log lacks NEXTVIEW_RANGE_IMAGE");
+}
+
+TEST_F(RecordedRun, AGoalThatWasChangedIsFoundByThePlanner) {
+  const auto folder = tampered([](lcm::LogEvent& event, std::vector<std::uint8_t>& bytes) {
+    if (is_view<goal_t>(event, bytes, 5)) {
+      goal_t goal = *decode_checked<goal_t>(bytes).message;
+      goal.fitness += 1e-9;
+      bytes = encode(goal);
+    }
+    return true;
+  });
+  EXPECT_EQ(replay_folder(folder).status, 0) << "the map does not depend on it";
+  expect_disagreement(replay_folder(folder, {"--planner"}),
+                      "view 5: the goal of attempt 1 differs in its fitness");
+}
+
+TEST_F(RecordedRun, TwoMessagesThatContradictEachOtherAreFound) {
+  std::filesystem::create_directories(folder_ / "twice");
+  lcm::LogFile from((folder_ / "run" / "run.lcmlog").string(), "r");
+  {
+    lcm::LogFile to((folder_ / "twice" / "run.lcmlog").string(), "w");
+    while (const lcm::LogEvent* read = from.readNextEvent()) {
+      lcm::LogEvent event = *read;
+      to.writeEvent(&event);
+      if (event.channel != Channel<commit_t>::name) continue;
+      const auto* data = static_cast<const std::uint8_t*>(read->data);
+      commit_t commit =
+          *decode_checked<commit_t>({data, static_cast<std::size_t>(read->datalen)}).message;
+      commit.mean_quality *= 0.5;
+      std::vector<std::uint8_t> bytes = encode(commit);
+      event.data = bytes.data();
+      to.writeEvent(&event);
+    }
+  }
+  expect_disagreement(replay_folder(folder_ / "twice"), "is there twice, and the two differ");
+}
+
+TEST_F(RecordedRun, AMessageThatCannotBeRightIsLeftOut) {
+  bool broken = false;
+  const auto folder = tampered([&](lcm::LogEvent& event, std::vector<std::uint8_t>& bytes) {
+    if (is_view<commit_t>(event, bytes, 2)) {
+      bytes.resize(bytes.size() - 3);
+      broken = true;
+    }
+    return true;
+  });
+  ASSERT_TRUE(broken);
+  const Outcome replay = replay_folder(folder);
+  expect_disagreement(replay, "view 2: the log lacks NEXTVIEW_COMMIT");
+  EXPECT_NE(replay.output.find("left out: a message on NEXTVIEW_COMMIT cannot be right"),
+            std::string::npos)
+      << replay.output;
+}
+
+TEST_F(RecordedRun, ALogThatWasCutOffIsFound) {
+  const auto log = folder_ / "run" / "run.lcmlog";
+  std::filesystem::resize_file(log, std::filesystem::file_size(log) / 2);
+  const Outcome replay = replay_folder(folder_ / "run");
+  expect_disagreement(replay, "view ");
+  EXPECT_NE(replay.output.find("are no whole message"), std::string::npos) << replay.output;
+}
+
+TEST_F(RecordedRun, ALogWithoutConfigurationIsFound) {
+  const auto folder = tampered([](lcm::LogEvent& event, std::vector<std::uint8_t>&) {
+    return event.channel != Channel<run_config_t>::name;
+  });
+  expect_disagreement(replay_folder(folder), "no run's configuration is in the log");
+}
+
+TEST(NoLog, IsSaidSo) {
+  const TemporaryFolder folder;
+  Outcome replay = replay_folder(folder / "nowhere");
+  EXPECT_EQ(replay.status, 1);
+  EXPECT_NE(replay.output.find("nowhere: no such folder"), std::string::npos) << replay.output;
+  replay = replay_folder(folder.path());
+  EXPECT_EQ(replay.status, 1);
+  EXPECT_NE(replay.output.find("run.lcmlog: no such file"), std::string::npos) << replay.output;
+  std::ofstream(folder / "run.lcmlog") << "this is no log";
+  replay = replay_folder(folder.path());
+  EXPECT_EQ(replay.status, 1);
+  EXPECT_NE(replay.output.find("no run's configuration"), std::string::npos) << replay.output;
+}
+
+}  // namespace
+}  // namespace nextview
