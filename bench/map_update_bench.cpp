@@ -151,6 +151,7 @@ void register_explored(const RecoveredRoom& room, int rooms_before, bool with_di
           return there;
         };
         double explored_m3 = 0.0;
+        std::size_t changed = 0;
         for (auto _ : state) {
           MapBuilder map(room.map().grid(), hall);
           for (int i = 0; i < rooms_before; ++i) {
@@ -163,10 +164,11 @@ void register_explored(const RecoveredRoom& room, int rooms_before, bool with_di
           explored_m3 = static_cast<double>(before.voxels[static_cast<std::size_t>(Label::Empty)]) *
                         std::pow(room.voxel_size_m(), 3);
           double elapsed_s = 0.0;
+          changed = 0;
           for (const RangeImage& image : room.scans()) {
             const RangeImage there = moved(image, 0, kRoomsPerSide);
             elapsed_s += thread_s([&] {
-              map.fold(there);
+              changed += map.fold(there).changed_slots.size();
               if (with_digest) benchmark::DoNotOptimize(map.digest());
             });
           }
@@ -174,6 +176,7 @@ void register_explored(const RecoveredRoom& room, int rooms_before, bool with_di
         }
         state.SetItemsProcessed(state.iterations() * pixels(room));
         state.counters["explored_m3"] = explored_m3;
+        state.counters["changed_voxels"] = static_cast<double>(changed);
       })
       ->UseManualTime()
       ->Iterations(1)
