@@ -19,13 +19,13 @@ std::optional<std::uint32_t> hidden_by(const Scene& scene, const Eigen::Vector3d
 /// any of many positions.
 ///
 /// The positions are the leaves of a tree of boxes. A ray is cast to one position of a box. If a
-/// triangle is in the way, its shadow, the cone from the point through the triangle and beyond its
-/// plane, is convex; so when all eight corners of the box lie in it the whole box is hidden:
+/// triangle is in the way, and the shadow of the surface around it (see SurfaceShadow) holds the
+/// whole box, all its positions are hidden:
 ///
 ///            point                  o  o  o    box: hidden
 ///              *------------/----   o  o  o
 ///                \         /        o  o  o
-///                  \      / triangle
+///                  \      / surface
 ///                    \   /            o  o    box: may be seen, so look at its halves
 ///
 /// Neighbouring points are mostly hidden by the same triangles and seen from the same positions, so
