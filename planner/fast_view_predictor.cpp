@@ -51,16 +51,10 @@ void pad(RayBundle& bundle) {
 FastViewPredictor::FastViewPredictor(const PredictionRaster& raster, double voxel_size_m,
                                      std::vector<Orientation> orientations, bool counts_quality,
                                      int threads)
-    : ViewPredictor(std::move(orientations), counts_quality),
-      voxel_size_m_(voxel_size_m),
+    : RasterViewPredictor(raster, voxel_size_m, std::move(orientations), counts_quality),
       arena_(std::max(threads, 1)),
       workspaces_(static_cast<std::size_t>(std::max(threads, 1))) {
-  if (this->orientations().empty() || raster.rays.pixels() == 0 || threads < 1) {
-    throw std::invalid_argument("a view predictor needs orientations, rays and a thread");
-  }
-  if (!(voxel_size_m > 0.0) || !(raster.range_max_m > 0.0)) {
-    throw std::invalid_argument("a view predictor's voxel size and range must be positive");
-  }
+  if (threads < 1) throw std::invalid_argument("a view predictor needs a thread");
   const double reach = prediction_reach(raster, voxel_size_m);
   for (const Orientation& orientation : this->orientations()) {
     views_.push_back(make_view(raster.rays, orientation, reach));
@@ -119,12 +113,7 @@ void FastViewPredictor::map_changed(const VoxelMap& map,
 
 void FastViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
                                 std::span<ViewCounts> per_orientation) {
-  if (!map.contains(sensor)) {
-    throw std::invalid_argument("a view cannot be predicted from outside the map's window");
-  }
-  if (per_orientation.size() != views_.size() || map.grid().voxel_size_m != voxel_size_m_) {
-    throw std::invalid_argument("a view predictor was made for other orientations or voxels");
-  }
+  check_arguments(map, sensor, per_orientation.size());
   prepare(map);
   const auto start = static_cast<std::int32_t>(field_->offset(sensor));
   const int jump = field_->at(sensor) - FreeSpaceField::kJump;

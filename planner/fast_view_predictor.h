@@ -16,7 +16,7 @@ namespace nextview {
 /// every orientation are tabulated once (their lines do not depend on where the sensor is), and
 /// walk through a FreeSpaceField many at a time (ray_kernel.h). Orientations are shared out among
 /// the threads; every one writes its own counts, so the result does not depend on how.
-class FastViewPredictor : public ViewPredictor {
+class FastViewPredictor : public RasterViewPredictor {
  public:
   /// @param threads how many may work at a time, at least 1
   /// @throws std::invalid_argument when there are no orientations, rays or threads, or a length is
@@ -46,7 +46,6 @@ class FastViewPredictor : public ViewPredictor {
   ViewCounts predict_view(const View& view, std::int32_t start, std::int32_t first_k,
                           Workspace& workspace) const;
 
-  double voxel_size_m_;
   std::vector<View> views_;
   std::optional<FreeSpaceField> field_;  // of the map of the last call
   SurfaceTable surfaces_;

@@ -83,15 +83,8 @@ std::vector<RayBundle> cube_faces(double reach) {
 
 PanoramaViewPredictor::PanoramaViewPredictor(const PredictionRaster& raster, double voxel_size_m,
                                              std::vector<Orientation> orientations)
-    : ViewPredictor(std::move(orientations), false),
-      voxel_size_m_(voxel_size_m),
+    : RasterViewPredictor(raster, voxel_size_m, std::move(orientations), false),
       rays_per_view_(static_cast<std::int64_t>(raster.rays.pixels())) {
-  if (this->orientations().empty() || rays_per_view_ == 0) {
-    throw std::invalid_argument("a view predictor needs orientations and rays");
-  }
-  if (!(voxel_size_m > 0.0) || !(raster.range_max_m > 0.0)) {
-    throw std::invalid_argument("a view predictor's voxel size and range must be positive");
-  }
   faces_ = cube_faces(prediction_reach(raster, voxel_size_m));
   for (const Orientation& orientation : this->orientations()) {
     append_view(raster.rays, orientation);
@@ -153,12 +146,7 @@ void PanoramaViewPredictor::map_changed(const VoxelMap& map,
 
 void PanoramaViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
                                     std::span<ViewCounts> per_orientation) {
-  if (!map.contains(sensor)) {
-    throw std::invalid_argument("a view cannot be predicted from outside the map's window");
-  }
-  if (per_orientation.size() != views_.size() || map.grid().voxel_size_m != voxel_size_m_) {
-    throw std::invalid_argument("a view predictor was made for other orientations or voxels");
-  }
+  check_arguments(map, sensor, per_orientation.size());
   if (!field_ || field_->window() != map.window()) field_.emplace(map);
   const auto start = static_cast<std::int32_t>(field_->offset(sensor));
   const int first_k = std::max(field_->at(sensor) - FreeSpaceField::kJump, 1);

@@ -22,7 +22,7 @@ namespace nextview {
 /// and of these words of 64 cells only the two dozen a view covers are looked at. Counts differ
 /// from PlainViewPredictor's as the direction of a ray is rounded to its cell's, by 1.4 degrees / 2
 /// at most along each side. Of the quality of surfaces nothing is counted.
-class PanoramaViewPredictor : public ViewPredictor {
+class PanoramaViewPredictor : public RasterViewPredictor {
  public:
   static constexpr int kFaceSide = 64;  ///< 90 / 64 = 1.4 degrees a cell; a multiple of 8
 
@@ -59,7 +59,6 @@ class PanoramaViewPredictor : public ViewPredictor {
   void append_view(const RayTable& rays, const Orientation& orientation);
   static ViewCounts count(const Panorama& panorama, const WeightWord* begin, const WeightWord* end);
 
-  double voxel_size_m_;
   std::int64_t rays_per_view_;
   std::vector<RayBundle> faces_;
   std::vector<WeightWord> weights_;

@@ -42,17 +42,31 @@ std::uint16_t predicted_quality(std::int32_t cosine) {
   return static_cast<std::uint16_t>(std::min<std::int64_t>(rounded, SurfaceVoxel::kQualityUnit));
 }
 
-PlainViewPredictor::PlainViewPredictor(const PredictionRaster& raster, double voxel_size_m,
-                                       std::vector<Orientation> orientations, bool counts_quality)
-    : ViewPredictor(std::move(orientations), counts_quality),
-      voxel_size_m_(voxel_size_m),
-      rays_per_view_(raster.rays.pixels()) {
-  if (this->orientations().empty() || rays_per_view_ == 0) {
+RasterViewPredictor::RasterViewPredictor(const PredictionRaster& raster, double voxel_size_m,
+                                         std::vector<Orientation> orientations, bool counts_quality)
+    : ViewPredictor(std::move(orientations), counts_quality), voxel_size_m_(voxel_size_m) {
+  if (this->orientations().empty() || raster.rays.pixels() == 0) {
     throw std::invalid_argument("a view predictor needs orientations and rays");
   }
   if (!(voxel_size_m > 0.0) || !(raster.range_max_m > 0.0)) {
     throw std::invalid_argument("a view predictor's voxel size and range must be positive");
   }
+}
+
+void RasterViewPredictor::check_arguments(const VoxelMap& map, const VoxelIndex& sensor,
+                                          std::size_t counts) const {
+  if (!map.contains(sensor)) {
+    throw std::invalid_argument("a view cannot be predicted from outside the map's window");
+  }
+  if (counts != orientations().size() || map.grid().voxel_size_m != voxel_size_m_) {
+    throw std::invalid_argument("a view predictor was made for other orientations or voxels");
+  }
+}
+
+PlainViewPredictor::PlainViewPredictor(const PredictionRaster& raster, double voxel_size_m,
+                                       std::vector<Orientation> orientations, bool counts_quality)
+    : RasterViewPredictor(raster, voxel_size_m, std::move(orientations), counts_quality),
+      rays_per_view_(raster.rays.pixels()) {
   const double reach = prediction_reach(raster, voxel_size_m);
   rays_.reserve(this->orientations().size() * rays_per_view_);
   for (const Orientation& orientation : this->orientations()) {
@@ -70,12 +84,7 @@ PlainViewPredictor::PlainViewPredictor(const PredictionRaster& raster, double vo
 
 void PlainViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
                                  std::span<ViewCounts> per_orientation) {
-  if (!map.contains(sensor)) {
-    throw std::invalid_argument("a view cannot be predicted from outside the map's window");
-  }
-  if (per_orientation.size() != orientations().size() || map.grid().voxel_size_m != voxel_size_m_) {
-    throw std::invalid_argument("a view predictor was made for other orientations or voxels");
-  }
+  check_arguments(map, sensor, per_orientation.size());
   for (std::size_t i = 0; i < per_orientation.size(); ++i) {
     const auto rays = std::span<const Ray>(rays_).subspan(i * rays_per_view_, rays_per_view_);
     per_orientation[i] = predict_view(map, sensor, rays);

@@ -77,8 +77,23 @@ class ViewPredictor {
   bool counts_quality_;
 };
 
+/// A predictor that tabulates the rays of a raster for voxels of one size.
+class RasterViewPredictor : public ViewPredictor {
+ protected:
+  /// @throws std::invalid_argument when there are no orientations or rays, or a length is not
+  ///         positive
+  RasterViewPredictor(const PredictionRaster& raster, double voxel_size_m,
+                      std::vector<Orientation> orientations, bool counts_quality);
+
+  /// Throws what predict() promises.
+  void check_arguments(const VoxelMap& map, const VoxelIndex& sensor, std::size_t counts) const;
+
+ private:
+  double voxel_size_m_;
+};
+
 /// The obvious predictor: one ray after the other, one voxel after the other.
-class PlainViewPredictor : public ViewPredictor {
+class PlainViewPredictor : public RasterViewPredictor {
  public:
   /// @throws std::invalid_argument when there are no orientations or rays, or a length is not
   ///         positive
@@ -103,7 +118,6 @@ class PlainViewPredictor : public ViewPredictor {
   ViewCounts predict_view(const VoxelMap& map, const VoxelIndex& sensor, std::span<const Ray> rays);
   void count_improvements(const VoxelMap& map, ViewCounts& counts);
 
-  double voxel_size_m_;
   std::size_t rays_per_view_;
   std::vector<Ray> rays_;            // by orientation, then by pixel
   std::vector<Sighting> sightings_;  // of the view at hand
