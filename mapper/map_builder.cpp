@@ -39,6 +39,7 @@ const FoldReport& MapBuilder::fold(const RangeImage& image) {
   State& s = *state_;
   check_range_image(image, s.map.grid(), s.map.window());
   s.report.changed_slots.clear();
+  s.report.updated_surfaces.clear();
 
   s.ray_ends.collect(image, s.map.grid(), s.map.window());  // eq. 1, eq. 2, normals (P9)
   const VoxelIndex sensor = s.map.grid().voxel_of(image.position_m);
@@ -62,6 +63,9 @@ const FoldReport& MapBuilder::fold(const RangeImage& image) {
 void MapBuilder::State::update_surfaces() {
   for (const RayEnd& end : ray_ends.ends()) {
     if (!end.is_surface) continue;
+    if (end.seen.normal_count > 0 || map.surface(end.voxel) == nullptr) {
+      report.updated_surfaces.push_back(static_cast<std::uint32_t>(map.slot(end.voxel)));
+    }
     SurfaceVoxel& voxel = map.surface_at(end.voxel);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       voxel.normal_sum[axis] += end.seen.normal_sum[axis];
@@ -118,7 +122,8 @@ std::size_t MapBuilder::memory_bytes() const {
   const State& s = *state_;
   return sizeof(State) + s.map.memory_bytes() + s.blocks.memory_bytes() + s.census.memory_bytes() +
          s.quality.memory_bytes() + s.digest.memory_bytes() + s.ray_ends.memory_bytes() +
-         s.report.changed_slots.capacity() * sizeof(std::uint32_t);
+         (s.report.changed_slots.capacity() + s.report.updated_surfaces.capacity()) *
+             sizeof(std::uint32_t);
 }
 
 }  // namespace nextview

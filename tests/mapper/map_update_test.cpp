@@ -173,6 +173,37 @@ void expect_report(const FoldReport& report, const std::vector<Label>& before, c
   }
 }
 
+// The surface data of every voxel of the window, by slot.
+std::vector<std::optional<SurfaceVoxel>> surfaces_of(const VoxelMap& map) {
+  std::vector<std::optional<SurfaceVoxel>> surfaces(map.labels().size());
+  const VoxelIndex end = map.window().min + map.window().size;
+  for (int k = map.window().min[2]; k < end[2]; ++k) {
+    for (int j = map.window().min[1]; j < end[1]; ++j) {
+      for (int i = map.window().min[0]; i < end[0]; ++i) {
+        const SurfaceVoxel* surface = map.surface({i, j, k});
+        if (surface != nullptr) surfaces[map.slot({i, j, k})] = *surface;
+      }
+    }
+  }
+  return surfaces;
+}
+
+void expect_updated_surfaces(const FoldReport& report,
+                             const std::vector<std::optional<SurfaceVoxel>>& before,
+                             const VoxelMap& map) {
+  const auto after = surfaces_of(map);
+  std::vector<std::uint32_t> different;
+  for (std::uint32_t slot = 0; slot < after.size(); ++slot) {
+    if (!same_surface(before[slot] ? &*before[slot] : nullptr,
+                      after[slot] ? &*after[slot] : nullptr)) {
+      different.push_back(slot);
+    }
+  }
+  std::vector<std::uint32_t> reported = report.updated_surfaces;
+  std::sort(reported.begin(), reported.end());
+  EXPECT_EQ(reported, different);
+}
+
 TEST(MapUpdate, EqualsItsPlainTwinOverRandomWorldsAndViews) {
   int views = 0;
   std::int64_t points = 0;
@@ -187,8 +218,10 @@ TEST(MapUpdate, EqualsItsPlainTwinOverRandomWorldsAndViews) {
     for (int view = uniform_int(random, 1, 4); view > 0; --view) {
       const RangeImage image = random_view(c, random);
       const std::vector<Label> before(builder.map().labels().begin(), builder.map().labels().end());
+      const auto surfaces_before = surfaces_of(builder.map());
       const FoldReport& report = builder.fold(image);
       reference.fold(image);
+      expect_updated_surfaces(report, surfaces_before, builder.map());
       expect_equal_maps(builder.map(), reference);
       expect_equal_statistics(builder.statistics(), reference.statistics());
       expect_report(report, before, builder.map(), image);
