@@ -270,9 +270,15 @@ FinishedRun Run::finish(Clock::time_point program_start) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   run.peak_memory_bytes["run"] = std::int64_t{usage.ru_maxrss} * 1024;
+  Reminder patience{milliseconds(1000)};
+  bool explained = false;
   while (visible_coming_.valid() && noted_signal() == 0 && !ended_early_) {
     visible_coming_.wait_for(milliseconds(50));
     make_rows();
+    if (visible_coming_.valid() && !explained && patience.due()) {
+      progress_.say("working out how much of the scene can be seen at all, for the coverage");
+      explained = true;
+    }
   }
   scoring_.request_stop();
   if (record_.config()) rows_.complete(record_);
