@@ -14,7 +14,13 @@ class Recorder {
  public:
   explicit Recorder(const std::string& file) : log_(file, "w") {}
 
-  void receive(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
+  // A plain function, because LCM calls members through a type they do not have.
+  static void receive(const lcm::ReceiveBuffer* buffer, const std::string& channel,
+                      Recorder* recorder) {
+    recorder->write(buffer, channel);
+  }
+
+  void write(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
     const std::string bytes(static_cast<const char*>(buffer->data), buffer->data_size);
     const bool first_time = seen_.insert(channel + bytes).second;
     const bool of_the_run = channel != "NEXTVIEW_REQUEST" && channel != "NEXTVIEW_STATUS";
@@ -54,7 +60,7 @@ int main(int argc, char** argv) {
   lcm::LCM lcm(url);
   if (!lcm.good()) return 1;
   Recorder recorder(argv[argc - 1]);
-  lcm.subscribe(".*", &Recorder::receive, &recorder)->setQueueCapacity(0);
+  lcm.subscribeFunction(".*", Recorder::receive, &recorder)->setQueueCapacity(0);
   while (stop == 0) lcm.handleTimeout(50);
   std::cerr << "forgot " << recorder.forgotten() << " messages" << std::endl;
 }
