@@ -10,7 +10,8 @@ namespace {
 constexpr int kBarWidth = 30;
 
 std::string numbers_of(const ViewRow& row) {
-  char coverage[32] = "pending";
+  // Until it is known what can be seen at all, and with --no-coverage always.
+  char coverage[32] = "unknown";
   if (row.surface_coverage) {
     std::snprintf(coverage, sizeof coverage, "%.3f", *row.surface_coverage);
   }

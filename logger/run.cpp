@@ -138,7 +138,7 @@ void Run::start_up() {
   record_.add(setup_.config);
   bus_->publish(setup_.config);
   last_progress_ = Clock::now();
-  start_scoring();
+  if (!options_.no_coverage) start_scoring();
   // Each says so when it has loaded what it needs; only then is there somebody to hear a goal.
   pump_until([&] { return fresh_statuses_ == answering; });
   processes_->start_planner();

@@ -98,6 +98,9 @@ void add_run_options(CLI::App& app, RunOptions& options) {
       ->check(number_in(0.1, 1e6))
       ->capture_default_str()
       ->group(group);
+  app.add_flag("--no-coverage", options.no_coverage,
+               "Do not work out surface_coverage, which takes minutes in a large building")
+      ->group(group);
   app.add_flag("--verbose", options.verbose, "Say more: port, processes, counters, timings")
       ->group(group);
 }

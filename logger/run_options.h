@@ -60,6 +60,7 @@ struct RunOptions {
 
   std::string lcm_url;  ///< empty: LCM_DEFAULT_URL, else a free port of its own
   double patience_s = 60.0;
+  bool no_coverage = false;  ///< surface_coverage is not worked out
   bool verbose = false;
 };
 

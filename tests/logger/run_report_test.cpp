@@ -116,7 +116,7 @@ TEST(Progress, IsOneLineAView) {
   progress.say("something else");
   progress.finish();
   EXPECT_EQ(out.str(),
-            "view   1/2  coverage pending  quality 0.500  start\n"
+            "view   1/2  coverage unknown  quality 0.500  start\n"
             "view   2/2  coverage 0.250  quality 0.500  decided in 4.0 ms\n"
             "something else\n");
 }
