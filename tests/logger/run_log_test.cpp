@@ -144,8 +144,8 @@ TEST_F(WrittenLog, MessagesThatCannotBeRightAreDropped) {
 }
 
 TEST(LogReader, RefusesWhatIsNotThere) {
-  EXPECT_THROW(LogReader("/no/such/log"), LogError);
-  EXPECT_THROW(LogReader(std::filesystem::temp_directory_path()), LogError);
+  EXPECT_THROW(LogReader{"/no/such/log"}, LogError);
+  EXPECT_THROW(LogReader{std::filesystem::temp_directory_path()}, LogError);
 }
 
 }  // namespace
