@@ -1,0 +1,101 @@
+#include "planner/chebyshev_distance.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+namespace nextview {
+namespace {
+
+// Distances of a box by the definition, cell by cell; x runs fastest, then y.
+std::vector<int> brute_force(const VoxelIndex& cells, const std::vector<VoxelIndex>& obstacles) {
+  std::vector<int> distances;
+  for (int z = 0; z < cells[2]; ++z) {
+    for (int y = 0; y < cells[1]; ++y) {
+      for (int x = 0; x < cells[0]; ++x) {
+        int nearest = ChebyshevDistance::kLargest;
+        for (const VoxelIndex& obstacle : obstacles) {
+          nearest = std::min(nearest, (obstacle - VoxelIndex(x, y, z)).cwiseAbs().maxCoeff());
+        }
+        distances.push_back(nearest);
+      }
+    }
+  }
+  return distances;
+}
+
+std::vector<int> by_rows(ChebyshevDistance& distance, const VoxelIndex& cells,
+                         const std::vector<VoxelIndex>& obstacles) {
+  distance.resize(cells);
+  for (int z = 0; z < cells[2]; ++z) {
+    for (int y = 0; y < cells[1]; ++y) {
+      std::fill_n(distance.row(y, z), cells[0], ChebyshevDistance::kLargest);
+    }
+  }
+  for (const VoxelIndex& obstacle : obstacles)
+    distance.row(obstacle[1], obstacle[2])[obstacle[0]] = 0;
+  distance.find();
+  std::vector<int> distances;
+  for (int z = 0; z < cells[2]; ++z) {
+    for (int y = 0; y < cells[1]; ++y) {
+      distances.insert(distances.end(), distance.row(y, z), distance.row(y, z) + cells[0]);
+    }
+  }
+  return distances;
+}
+
+TEST(ChebyshevDistance, ABoxWithoutObstaclesIsAllFarAway) {
+  ChebyshevDistance distance;
+  const VoxelIndex cells(40, 3, 2);
+  EXPECT_EQ(by_rows(distance, cells, {}), std::vector<int>(240, ChebyshevDistance::kLargest));
+}
+
+TEST(ChebyshevDistance, GrowsByOneAMoveOfTheKing) {
+  ChebyshevDistance distance;
+  by_rows(distance, {80, 50, 45}, {{40, 2, 3}});
+  EXPECT_EQ(distance.row(2, 3)[40], 0);
+  EXPECT_EQ(distance.row(3, 4)[41], 1);
+  EXPECT_EQ(distance.row(2, 3)[35], 5);
+  EXPECT_EQ(distance.row(30, 3)[50], 28);
+  EXPECT_EQ(distance.row(20, 33)[45], 30);
+  EXPECT_EQ(distance.row(40, 44)[79], ChebyshevDistance::kLargest);
+}
+
+// Rows lie one behind the other in memory; an obstacle at the end of one is far from the beginning
+// of the next.
+TEST(ChebyshevDistance, DoesNotGoAroundTheEndsOfRowsAndLayers) {
+  ChebyshevDistance distance;
+  for (int columns = 1; columns <= 100; ++columns) {
+    const VoxelIndex cells(columns, 40, 35);
+    by_rows(distance, cells, {{columns - 1, 0, 0}, {0, 39, 34}});
+    ASSERT_EQ(distance.row(1, 0)[0], std::min(std::max(columns - 1, 1), 31)) << columns;
+    ASSERT_EQ(distance.row(0, 1)[0], std::min(std::max(columns - 1, 1), 31)) << columns;
+    ASSERT_EQ(distance.row(38, 34)[columns - 1], std::min(std::max(columns - 1, 1), 31));
+    ASSERT_EQ(distance.row(39, 0)[0], ChebyshevDistance::kLargest);
+  }
+}
+
+TEST(ChebyshevDistance, AgreesWithTheDefinitionInRandomBoxes) {
+  std::mt19937 random(5);
+  const auto below = [&random](int n) {
+    return static_cast<int>(random() % static_cast<unsigned>(n));
+  };
+  ChebyshevDistance distance;  // one for all: it must forget the last box
+  int cells_compared = 0;
+  for (int box = 0; box < 150; ++box) {
+    const VoxelIndex cells(1 + below(75), 1 + below(45), 1 + below(40));
+    std::vector<VoxelIndex> obstacles;
+    for (int i = below(12); i > 0; --i) {
+      obstacles.emplace_back(below(cells[0]), below(cells[1]), below(cells[2]));
+    }
+    ASSERT_EQ(by_rows(distance, cells, obstacles), brute_force(cells, obstacles))
+        << "box " << box << " of " << cells.transpose();
+    cells_compared += cells.prod();
+  }
+  EXPECT_GE(cells_compared, 1'000'000);
+}
+
+}  // namespace
+}  // namespace nextview
