@@ -12,10 +12,12 @@
 
 namespace nextview {
 
-/// The same counts as PlainViewPredictor's, to the last ray, some forty times sooner: the rays of
-/// every orientation are tabulated once (their lines do not depend on where the sensor is), and
-/// walk through a FreeSpaceField many at a time (ray_kernel.h). Orientations are shared out among
-/// the threads; every one writes its own counts, so the result does not depend on how.
+/// The same counts as PlainViewPredictor's, to the last ray, some sixty times sooner: the rays of
+/// all orientations are tabulated once (their lines do not depend on where the sensor is), and walk
+/// through a FreeSpaceField many at a time (ray_kernel.h). The table is sorted by where rays point,
+/// not by whose they are, so that rays of different orientations that go the same way go together.
+/// Pieces of the table are shared out among the threads, each of which counts for itself; sums of
+/// integers do not depend on how.
 class FastViewPredictor : public RasterViewPredictor {
  public:
   /// @param threads how many may work at a time, at least 1
@@ -30,24 +32,40 @@ class FastViewPredictor : public RasterViewPredictor {
                    std::span<const std::uint32_t> updated_surfaces) override;
 
  private:
-  // The rays of one orientation, by the direction they drive in.
-  struct View {
-    std::vector<RayBundle> bundles;
-    std::vector<QuantisedDirection> directions;  // world frame, by RayBundle::ray
+  // Rays of all orientations that drive in the same direction.
+  struct Table {
+    RayBundle bundle;                            // its groups are orientations
+    std::vector<QuantisedDirection> directions;  // world frame, by ray; for f_quality only
+    std::vector<std::int32_t> occupied_at;       // where rays ended; for f_quality only
+  };
+  // What one thread casts at a time.
+  struct Piece {
+    std::size_t table;
+    PacketRange packets;
+  };
+  struct PacketOfView {
+    std::size_t table;
+    std::size_t packet;
   };
   // What one thread works with.
   struct Workspace {
-    std::vector<std::int32_t> met;
+    std::vector<RayCounts> counts;  // by orientation
     ImprovementCount improvement;
   };
 
-  View make_view(const RayTable& rays, const Orientation& orientation, double reach) const;
+  void make_tables(const PredictionRaster& raster, double voxel_size_m);
   void prepare(const VoxelMap& map);
-  ViewCounts predict_view(const View& view, std::int32_t start, std::int32_t first_k,
-                          Workspace& workspace) const;
+  void cast(const Piece& piece, const VoxelIndex& sensor, Workspace& workspace);
+  void count_improvements(std::size_t orientation, Workspace& workspace, ViewCounts& counts) const;
+  // Calls work(i, workspace) for every i < count, from all threads.
+  template <class Work>
+  void share_out(std::size_t count, const Work& work);
 
-  std::vector<View> views_;
-  std::optional<FreeSpaceField> field_;  // of the map of the last call
+  std::int64_t rays_per_view_;
+  std::vector<Table> tables_;
+  std::vector<Piece> pieces_;
+  std::vector<std::vector<PacketOfView>> packets_of_;  // by orientation; for f_quality only
+  std::optional<FreeSpaceField> field_;                // of the map of the last call
   SurfaceTable surfaces_;
   tbb::task_arena arena_;
   std::vector<Workspace> workspaces_;  // by thread of the arena

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mapper/voxel_map.h"
+#include "planner/chebyshev_distance.h"
 
 namespace nextview {
 
@@ -15,25 +16,22 @@ namespace nextview {
 ///
 ///     kOccupied, kOcclusionPlane, kUnseen   a voxel that is not Empty
 ///     kOutside                              the layer of voxels around the window
-///     kJump + d, 1 <= d <= kMaxJump         an Empty voxel; all voxels nearer than d in the
+///     d, 1 <= d <= kMaxJump                 an Empty voxel; all voxels nearer than d in the
 ///                                           Chebyshev sense (the larger of |di|, |dj|, |dk|) are
 ///                                           Empty too, so a line may advance d steps at once
 ///
 /// d is the Chebyshev distance to the nearest voxel that is not Empty, or kMaxJump when that is
-/// farther. The sides of the field are powers of two, so an offset is made by shifts; unlike the
-/// map's buffer it has a layer around the window, so that a walk needs no test for the limit.
-///
-/// How d is found. With E_0 the set of Empty voxels as one bit each, and E_i the erosion of E_(i-1)
-/// by the 3 x 3 x 3 cube, d = |{i < kMaxJump : voxel in E_i}|. A 64-bit word erodes 64 voxels in a
-/// few instructions, and only the box around what changed is done again.
+/// farther. Of the bytes that end a walk the bits of kMaxJump are 0: a walk adds them to its steps
+/// without asking. The sides of the field are powers of two, so an offset is made by shifts; unlike
+/// the map's buffer it has a layer around the window, so that a walk needs no test for the limit.
+/// Only the box around what changed is worked out again (chebyshev_distance.h).
 class FreeSpaceField {
  public:
-  static constexpr std::uint8_t kOccupied = 0;
-  static constexpr std::uint8_t kOcclusionPlane = 1;
-  static constexpr std::uint8_t kUnseen = 2;
-  static constexpr std::uint8_t kOutside = 3;
-  static constexpr std::uint8_t kJump = 3;
-  static constexpr int kMaxJump = 31;
+  static constexpr std::uint8_t kMaxJump = ChebyshevDistance::kLargest;
+  static constexpr std::uint8_t kOccupied = 1 * (kMaxJump + 1);
+  static constexpr std::uint8_t kOcclusionPlane = 2 * (kMaxJump + 1);
+  static constexpr std::uint8_t kUnseen = 3 * (kMaxJump + 1);
+  static constexpr std::uint8_t kOutside = 4 * (kMaxJump + 1);
 
   /// The field of a whole map.
   /// @throws std::invalid_argument when it would need 2 GiB or more
@@ -50,11 +48,17 @@ class FreeSpaceField {
            (static_cast<std::size_t>(cell[2]) << shift_[2]);
   }
   std::uint8_t at(const VoxelIndex& index) const { return bytes_[offset(index)]; }
+  /// How many steps a walk that starts in a voxel may take at once, at least 1: the first step
+  /// leaves the voxel whatever it is.
+  int steps_from(const VoxelIndex& index) const {
+    const std::uint8_t byte = at(index);
+    return byte <= kMaxJump ? byte : 1;
+  }
   /// All bytes, with three more behind the last so that four can be read from any offset.
   const std::uint8_t* bytes() const { return bytes_.data(); }
   /// log2 of the distance in bytes between neighbours along x, y, z.
   std::array<int, 3> shifts() const { return shift_; }
-  std::size_t memory_bytes() const { return bytes_.capacity() + empty_.capacity() * 8; }
+  std::size_t memory_bytes() const { return bytes_.capacity() + distance_.memory_bytes(); }
 
  private:
   // Boxes of cells; a cell is a voxel's index relative to the layer around the window.
@@ -64,20 +68,17 @@ class FreeSpaceField {
   };
 
   static std::uint8_t byte_of(Label label);
-  std::size_t word_row(int y, int z) const {
-    return (static_cast<std::size_t>(z) * static_cast<std::size_t>(cells_[1]) +
-            static_cast<std::size_t>(y)) *
-           words_;
+  std::uint8_t* row(int y, int z) {
+    return &bytes_[(static_cast<std::size_t>(y) << shift_[1]) +
+                   (static_cast<std::size_t>(z) << shift_[2])];
   }
-  void set_empty(const VoxelIndex& cell, bool empty);
   void find_distances(const Box& changed);
 
   MapWindow window_;
   VoxelIndex cells_;  ///< window and layer
   std::array<int, 3> shift_;
-  std::size_t words_;  ///< 64-bit words a row of cells
   std::vector<std::uint8_t> bytes_;
-  std::vector<std::uint64_t> empty_;  ///< E_0, bit x & 63 of word x / 64
+  ChebyshevDistance distance_;  ///< workspace
 };
 
 }  // namespace nextview

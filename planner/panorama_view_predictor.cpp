@@ -63,6 +63,7 @@ std::vector<RayBundle> cube_faces(double reach) {
     bundle.slope1.resize(kRays);
     bundle.slope2.resize(kRays);
     bundle.reach.resize(kRays);
+    bundle.group.resize(kRays / RayBundle::kPacketRays);
     for (int row = 0; row < kSide; ++row) {
       for (int column = 0; column < kSide; ++column) {
         const Cell cell{face, row, column};
@@ -88,9 +89,6 @@ PanoramaViewPredictor::PanoramaViewPredictor(const PredictionRaster& raster, dou
   faces_ = cube_faces(prediction_reach(raster, voxel_size_m));
   for (const Orientation& orientation : this->orientations()) {
     append_view(raster.rays, orientation);
-  }
-  for (auto* bits : {&panorama_.occupied, &panorama_.occlusion_plane, &panorama_.unseen}) {
-    bits->assign(kWords, 0);
   }
 }
 
@@ -148,14 +146,18 @@ void PanoramaViewPredictor::predict(const VoxelMap& map, const VoxelIndex& senso
                                     std::span<ViewCounts> per_orientation) {
   check_arguments(map, sensor, per_orientation.size());
   if (!field_ || field_->window() != map.window()) field_.emplace(map);
-  const auto start = static_cast<std::int32_t>(field_->offset(sensor));
-  const int first_k = std::max(field_->at(sensor) - FreeSpaceField::kJump, 1);
+  for (auto* bits : {&panorama_.occupied, &panorama_.occlusion_plane, &panorama_.unseen}) {
+    bits->assign(kWords, 0);
+  }
   for (std::size_t face = 0; face < faces_.size(); ++face) {
     const std::size_t word = face * kSide * kSide / 64;
-    const RayEnds ends{nullptr, reinterpret_cast<std::uint8_t*>(&panorama_.occupied[word]),
-                       reinterpret_cast<std::uint8_t*>(&panorama_.occlusion_plane[word]),
-                       reinterpret_cast<std::uint8_t*>(&panorama_.unseen[word])};
-    cast_bundle(field_->bytes(), field_->shifts(), start, first_k, faces_[face], ends);
+    RayEnds ends;
+    ends.occupied = reinterpret_cast<std::uint8_t*>(&panorama_.occupied[word]);
+    ends.occlusion_plane = reinterpret_cast<std::uint8_t*>(&panorama_.occlusion_plane[word]);
+    ends.unseen = reinterpret_cast<std::uint8_t*>(&panorama_.unseen[word]);
+    cast_bundle(field_->bytes(), field_->shifts(),
+                static_cast<std::int32_t>(field_->offset(sensor)), field_->steps_from(sensor),
+                faces_[face], {0, faces_[face].packets()}, ends);
   }
   for (std::size_t i = 0; i < views_.size(); ++i) {
     ViewCounts& counts = per_orientation[i];

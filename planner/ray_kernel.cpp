@@ -12,135 +12,176 @@ HWY_BEFORE_NAMESPACE();
 namespace nextview::HWY_NAMESPACE {
 
 namespace hn = hwy::HWY_NAMESPACE;
-using Tag = hn::CappedTag<std::int32_t, kBundleGranularity>;
+using Tag = hn::CappedTag<std::int32_t, RayBundle::kPacketRays>;
 using Vector = hn::Vec<Tag>;
+
+constexpr std::size_t kInFlight = 8;  // vectors that take turns
 
 // What all rays of a bundle share.
 struct Walk {
   const std::int32_t* field;
   Vector start;
-  Vector driving_stride;
-  int shift1;
-  int shift2;
+  Vector driving_shift;
+  Vector shift1;
+  Vector shift2;
 };
 
 // The rays of one vector.
 struct Rays {
+  std::size_t first;  // its place in the table
   Vector slope1;
   Vector slope2;
   Vector k;
-  Vector offset;
-  Vector byte;
+  Vector read;  // of the field: a byte and three that do not matter
 };
 
-HWY_INLINE Vector fixed_point(Vector k, Vector slope, int shift) {
+HWY_INLINE Rays load(const RayBundle& bundle, std::size_t first, Vector first_k) {
+  const Tag d;
+  return {first, hn::LoadU(d, &bundle.slope1[first]), hn::LoadU(d, &bundle.slope2[first]), first_k,
+          hn::Zero(d)};
+}
+
+// SSE has no shifts by lane; elsewhere they cost less than a shift of all lanes by a register.
+HWY_INLINE Vector shift_left(Vector v, Vector bits) {
+#if HWY_TARGET == HWY_SSE4 || HWY_TARGET == HWY_SSSE3
+  return hn::ShiftLeftSame(v, hn::GetLane(bits));
+#else
+  return hn::Shl(v, bits);
+#endif
+}
+
+HWY_INLINE Vector fixed_point(Vector k, Vector slope, Vector shift) {
   const Tag d;
   const Vector half = hn::Set(d, 1 << 15);
-  return hn::ShiftLeftSame(hn::ShiftRight<16>(hn::Add(hn::Mul(k, slope), half)), shift);
+  return shift_left(hn::ShiftRight<16>(hn::Add(hn::Mul(k, slope), half)), shift);
 }
 
-// Reads each ray's byte and jumps; returns by how much.
-HWY_INLINE Vector advance(const Walk& walk, Rays& rays) {
-  const Tag d;
-  const Vector jump = hn::Set(d, FreeSpaceField::kJump);
+// Where in the field rays are.
+template <int direction>
+HWY_INLINE Vector offset_of(const Walk& walk, const Rays& rays) {
+  const Vector along = shift_left(rays.k, walk.driving_shift);
   const Vector across = hn::Add(fixed_point(rays.k, rays.slope1, walk.shift1),
                                 fixed_point(rays.k, rays.slope2, walk.shift2));
-  rays.offset = hn::Add(hn::Add(walk.start, hn::Mul(rays.k, walk.driving_stride)), across);
-  rays.byte = hn::And(hn::GatherOffset(d, walk.field, rays.offset), hn::Set(d, 255));
-  const Vector step = hn::Sub(hn::Max(rays.byte, jump), jump);
-  rays.k = hn::Add(rays.k, step);
-  return step;
+  return hn::Add(direction > 0 ? hn::Add(walk.start, along) : hn::Sub(walk.start, along), across);
 }
 
-HWY_INLINE Rays load(const RayBundle& bundle, std::size_t i, Vector first_k) {
+// Reads each ray's byte and jumps. Returns whether any did.
+template <int direction>
+HWY_INLINE bool advance(const Walk& walk, Rays& rays) {
   const Tag d;
-  Rays rays;
-  rays.slope1 = hn::LoadU(d, &bundle.slope1[i]);
-  rays.slope2 = hn::LoadU(d, &bundle.slope2[i]);
-  rays.k = first_k;
-  rays.offset = hn::Zero(d);
-  rays.byte = hn::Zero(d);
-  return rays;
+  rays.read = hn::GatherOffset(d, walk.field, offset_of<direction>(walk, rays));
+  const Vector jump = hn::And(rays.read, hn::Set(d, FreeSpaceField::kMaxJump));
+  rays.k = hn::Add(rays.k, jump);
+  return !hn::AllTrue(d, hn::Eq(jump, hn::Zero(d)));
 }
 
-// Sums of what was met, one count a lane.
-struct LaneCounts {
-  Vector occupied;
-  Vector occlusion_plane;
-  Vector unseen;
-};
-
-// Sets the bits of the rays from i on; they must be clear where a byte is shared by vectors.
+// Sets the bits of rays from `first` on. Vectors of less than eight rays share a byte.
 template <class Mask>
-HWY_INLINE void store_bits(Mask mask, std::size_t i, std::uint8_t* bits) {
+HWY_INLINE void store_bits(Mask mask, std::size_t first, std::uint8_t* bits) {
   const Tag d;
-  if (hn::Lanes(d) >= 8) {
-    hn::StoreMaskBits(d, mask, bits + i / 8);
-    return;
+  std::uint8_t set[8] = {};
+  const std::size_t bytes = hn::StoreMaskBits(d, mask, set);
+  for (std::size_t i = 0; i < bytes; ++i) {
+    bits[first / 8 + i] =
+        static_cast<std::uint8_t>(bits[first / 8 + i] | static_cast<unsigned>(set[i]) << first % 8);
   }
-  std::uint8_t few[8] = {};
-  hn::StoreMaskBits(d, mask, few);
-  const auto kept = i % 8 == 0 ? 0U : bits[i / 8];
-  bits[i / 8] = static_cast<std::uint8_t>(kept | static_cast<unsigned>(few[0]) << (i % 8));
 }
 
-HWY_INLINE void count(const RayBundle& bundle, std::size_t i, const Rays& rays, LaneCounts& counts,
-                      const RayEnds& ends) {
+// Says where the rays of a vector have ended.
+template <int direction>
+HWY_INLINE void finish(const RayBundle& bundle, const Walk& walk, const Rays& rays,
+                       const RayEnds& ends) {
   const Tag d;
-  const auto too_far = hn::Gt(rays.k, hn::LoadU(d, &bundle.reach[i]));
-  const Vector kind = hn::IfThenElse(too_far, hn::Set(d, FreeSpaceField::kOutside), rays.byte);
+  const auto too_far = hn::Gt(rays.k, hn::LoadU(d, &bundle.reach[rays.first]));
+  const Vector kind = hn::IfThenElse(too_far, hn::Set(d, FreeSpaceField::kOutside),
+                                     hn::And(rays.read, hn::Set(d, 255)));
   const auto occupied = hn::Eq(kind, hn::Set(d, FreeSpaceField::kOccupied));
   const auto plane = hn::Eq(kind, hn::Set(d, FreeSpaceField::kOcclusionPlane));
   const auto unseen = hn::Eq(kind, hn::Set(d, FreeSpaceField::kUnseen));
-  counts.occupied = hn::Sub(counts.occupied, hn::VecFromMask(d, occupied));
-  counts.occlusion_plane = hn::Sub(counts.occlusion_plane, hn::VecFromMask(d, plane));
-  counts.unseen = hn::Sub(counts.unseen, hn::VecFromMask(d, unseen));
+  if (ends.counts != nullptr) {
+    const std::int32_t group = bundle.group[rays.first / RayBundle::kPacketRays];
+    RayCounts& counts = ends.counts[group];
+    counts.occupied += static_cast<std::int32_t>(hn::CountTrue(d, occupied));
+    counts.occlusion_plane += static_cast<std::int32_t>(hn::CountTrue(d, plane));
+    counts.unseen += static_cast<std::int32_t>(hn::CountTrue(d, unseen));
+  }
   if (ends.occupied_at != nullptr) {
-    hn::StoreU(hn::IfThenElse(occupied, rays.offset, hn::Set(d, -1)), d, ends.occupied_at + i);
+    hn::StoreU(hn::IfThenElse(occupied, offset_of<direction>(walk, rays), hn::Set(d, -1)), d,
+               ends.occupied_at + rays.first);
   }
   if (ends.occupied != nullptr) {
-    store_bits(occupied, i, ends.occupied);
-    store_bits(plane, i, ends.occlusion_plane);
-    store_bits(unseen, i, ends.unseen);
+    store_bits(occupied, rays.first, ends.occupied);
+    store_bits(plane, rays.first, ends.occlusion_plane);
+    store_bits(unseen, rays.first, ends.unseen);
   }
 }
 
-RayCounts CastBundle(const std::uint8_t* field, const std::array<int, 3>& shifts,
-                     std::int32_t start, std::int32_t first_k, const RayBundle& bundle,
-                     const RayEnds& ends) {
+// Casts as long as there are enough vectors to keep all turns busy. Returns the first ray left
+// over.
+template <int direction>
+HWY_INLINE std::size_t cast_in_turns(const RayBundle& bundle, const Walk& walk, Vector first_k,
+                                     std::size_t next, std::size_t end, const RayEnds& ends) {
+  const std::size_t lanes = hn::Lanes(Tag());
+  if (end - next < kInFlight * lanes) return next;
+  Rays turns[kInFlight];
+  for (Rays& rays : turns) {
+    rays = load(bundle, next, first_k);
+    next += lanes;
+  }
+  bool table_is_empty = false;
+  while (!table_is_empty) {
+    bool moving[kInFlight];
+    HWY_UNROLL(8)
+    for (std::size_t i = 0; i < kInFlight; ++i) moving[i] = advance<direction>(walk, turns[i]);
+    HWY_UNROLL(8)
+    for (std::size_t i = 0; i < kInFlight; ++i) {
+      if (HWY_LIKELY(moving[i])) continue;
+      if (next == end) {
+        table_is_empty = true;
+        break;
+      }
+      finish<direction>(bundle, walk, turns[i], ends);
+      turns[i] = load(bundle, next, first_k);
+      next += lanes;
+    }
+  }
+  bool any_moves = true;
+  while (any_moves) {
+    any_moves = false;
+    for (Rays& rays : turns) any_moves |= advance<direction>(walk, rays);
+  }
+  for (const Rays& rays : turns) finish<direction>(bundle, walk, rays, ends);
+  return next;
+}
+
+template <int direction>
+HWY_INLINE void cast(const RayBundle& bundle, const Walk& walk, Vector first_k,
+                     const PacketRange& packets, const RayEnds& ends) {
+  const std::size_t end = packets.end * RayBundle::kPacketRays;
+  std::size_t next = cast_in_turns<direction>(bundle, walk, first_k,
+                                              packets.begin * RayBundle::kPacketRays, end, ends);
+  for (; next < end; next += hn::Lanes(Tag())) {
+    Rays rays = load(bundle, next, first_k);
+    while (advance<direction>(walk, rays)) {
+    }
+    finish<direction>(bundle, walk, rays, ends);
+  }
+}
+
+void CastBundle(const std::uint8_t* field, const std::array<int, 3>& shifts, std::int32_t start,
+                std::int32_t first_k, const RayBundle& bundle, const PacketRange& packets,
+                const RayEnds& ends) {
   const Tag d;
-  const std::size_t lanes = hn::Lanes(d);
   const auto axis = static_cast<std::size_t>(bundle.driving_axis);
   const Walk walk{reinterpret_cast<const std::int32_t*>(field), hn::Set(d, start),
-                  hn::Set(d, bundle.direction * (1 << shifts[axis])), shifts[(axis + 1) % 3],
-                  shifts[(axis + 2) % 3]};
+                  hn::Set(d, shifts[axis]), hn::Set(d, shifts[(axis + 1) % 3]),
+                  hn::Set(d, shifts[(axis + 2) % 3])};
   const Vector k = hn::Set(d, first_k);
-  const auto moving = [&d](Vector steps)
-                          HWY_ATTR { return !hn::AllTrue(d, hn::Eq(steps, hn::Zero(d))); };
-  LaneCounts counts{hn::Zero(d), hn::Zero(d), hn::Zero(d)};
-  const auto size = static_cast<std::size_t>(bundle.size());
-  std::size_t i = 0;
-  for (; i + 4 * lanes <= size; i += 4 * lanes) {
-    Rays a = load(bundle, i, k);
-    Rays b = load(bundle, i + lanes, k);
-    Rays c = load(bundle, i + 2 * lanes, k);
-    Rays e = load(bundle, i + 3 * lanes, k);
-    while (moving(hn::Or(hn::Or(advance(walk, a), advance(walk, b)),
-                         hn::Or(advance(walk, c), advance(walk, e))))) {
-    }
-    count(bundle, i, a, counts, ends);
-    count(bundle, i + lanes, b, counts, ends);
-    count(bundle, i + 2 * lanes, c, counts, ends);
-    count(bundle, i + 3 * lanes, e, counts, ends);
+  if (bundle.direction > 0) {
+    cast<+1>(bundle, walk, k, packets, ends);
+  } else {
+    cast<-1>(bundle, walk, k, packets, ends);
   }
-  for (; i < size; i += lanes) {
-    Rays a = load(bundle, i, k);
-    while (moving(advance(walk, a))) {
-    }
-    count(bundle, i, a, counts, ends);
-  }
-  const auto total = [&d](Vector v) HWY_ATTR { return hn::GetLane(hn::SumOfLanes(d, v)); };
-  return {total(counts.occupied), total(counts.occlusion_plane), total(counts.unseen)};
 }
 
 const char* TargetName() { return hwy::TargetName(HWY_TARGET); }
@@ -154,10 +195,10 @@ namespace nextview {
 HWY_EXPORT(CastBundle);
 HWY_EXPORT(TargetName);
 
-RayCounts cast_bundle(const std::uint8_t* field, const std::array<int, 3>& shifts,
-                      std::int32_t start, std::int32_t first_k, const RayBundle& bundle,
-                      const RayEnds& ends) {
-  return HWY_DYNAMIC_DISPATCH(CastBundle)(field, shifts, start, first_k, bundle, ends);
+void cast_bundle(const std::uint8_t* field, const std::array<int, 3>& shifts, std::int32_t start,
+                 std::int32_t first_k, const RayBundle& bundle, const PacketRange& packets,
+                 const RayEnds& ends) {
+  HWY_DYNAMIC_DISPATCH(CastBundle)(field, shifts, start, first_k, bundle, packets, ends);
 }
 
 const char* ray_kernel_target() { return HWY_DYNAMIC_DISPATCH(TargetName)(); }

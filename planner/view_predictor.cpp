@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <stdexcept>
 
 #include "sensor_sim/sensor_pose.h"
@@ -28,12 +27,6 @@ QuantisedDirection quantise_direction(const Eigen::Vector3d& direction) {
         std::lround(direction[static_cast<int>(axis)] * SurfaceVoxel::kNormalUnit));
   }
   return quantised;
-}
-
-std::int32_t quantised_cosine(const QuantisedDirection& normal, const QuantisedDirection& ray) {
-  std::int32_t dot = 0;
-  for (std::size_t axis = 0; axis < 3; ++axis) dot += normal[axis] * ray[axis];
-  return std::abs(dot);
 }
 
 std::uint16_t predicted_quality(std::int32_t cosine) {

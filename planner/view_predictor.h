@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <cstdlib>
 #include <span>
 #include <vector>
 
@@ -36,7 +37,10 @@ using QuantisedDirection = std::array<std::int16_t, 3>;
 /// Rounds a vector of length <= 1; halves go away from zero.
 QuantisedDirection quantise_direction(const Eigen::Vector3d& direction);
 /// |normal . ray|, 1/2^28; below 2^29 for rounded unit vectors, and no intermediate sum is larger.
-std::int32_t quantised_cosine(const QuantisedDirection& normal, const QuantisedDirection& ray);
+inline std::int32_t quantised_cosine(const QuantisedDirection& normal,
+                                     const QuantisedDirection& ray) {
+  return std::abs(normal[0] * ray[0] + normal[1] * ray[1] + normal[2] * ray[2]);
+}
 /// min(kQualityUnit, round(cosine * kQualityUnit / 2^28)).
 std::uint16_t predicted_quality(std::int32_t cosine);
 

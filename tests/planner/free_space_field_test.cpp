@@ -38,13 +38,13 @@ std::uint8_t expected_byte(const VoxelMap& map, const VoxelIndex& index) {
         const int step = std::max(std::abs(j), std::abs(k)) == d ? 1 : 2 * d;
         for (int i = -d; i <= d; i += step) {
           if (!is_empty(index + VoxelIndex(i, j, k))) {
-            return static_cast<std::uint8_t>(FreeSpaceField::kJump + d);
+            return static_cast<std::uint8_t>(d);
           }
         }
       }
     }
   }
-  return FreeSpaceField::kJump + FreeSpaceField::kMaxJump;
+  return FreeSpaceField::kMaxJump;
 }
 
 int count_wrong_bytes(const FreeSpaceField& field, const VoxelMap& map) {
@@ -63,9 +63,9 @@ int count_wrong_bytes(const FreeSpaceField& field, const VoxelMap& map) {
 TEST(FreeSpaceField, AnEmptyMapCountsDownToItsLimits) {
   const VoxelMap map = empty_map({0, 0, 0}, {9, 9, 9});
   const FreeSpaceField field(map);
-  EXPECT_EQ(field.at({4, 4, 4}), FreeSpaceField::kJump + 5);
-  EXPECT_EQ(field.at({0, 4, 4}), FreeSpaceField::kJump + 1);
-  EXPECT_EQ(field.at({4, 7, 4}), FreeSpaceField::kJump + 2);
+  EXPECT_EQ(field.at({4, 4, 4}), 5);
+  EXPECT_EQ(field.at({0, 4, 4}), 1);
+  EXPECT_EQ(field.at({4, 7, 4}), 2);
   EXPECT_EQ(field.at({-1, 4, 4}), FreeSpaceField::kOutside);
   EXPECT_EQ(field.at({9, 9, 9}), FreeSpaceField::kOutside);
 }
@@ -75,8 +75,7 @@ TEST(FreeSpaceField, DistancesEndAtTheLargestJump) {
   const FreeSpaceField field(map);
   for (int i = -40; i <= 40; ++i) {
     const int to_limit = 41 - std::abs(i);
-    EXPECT_EQ(field.at({i, 0, 0}),
-              FreeSpaceField::kJump + std::min(to_limit, FreeSpaceField::kMaxJump));
+    EXPECT_EQ(field.at({i, 0, 0}), std::min<int>(to_limit, FreeSpaceField::kMaxJump));
     EXPECT_EQ(field.at({i, 2, i}), field.at({0, i, 0}));
   }
 }
