@@ -28,14 +28,17 @@ void Bus::publish_bytes(std::string_view channel, const MessageKey& key, bool re
     throw std::logic_error(role_ + " would publish " + std::to_string(bytes.size()) + " bytes on " +
                            name + ", more than a message may have");
   }
+  std::span<const std::uint8_t> to_send = bytes;
   if (remember) {
-    const auto [kept, is_new] = published_[name].emplace(key, bytes);
+    // Takes the bytes only when the key is new.
+    const auto [kept, is_new] = published_[name].try_emplace(key, std::move(bytes));
     if (!is_new && kept->second != bytes) {
       throw std::logic_error(role_ + " would publish view " + std::to_string(key.view) +
                              " twice, differently, on " + name);
     }
+    to_send = kept->second;
   }
-  transport_->publish(channel, bytes);
+  transport_->publish(channel, to_send);
 }
 
 void Bus::request_channel(std::string_view channel, int view, int attempt) {

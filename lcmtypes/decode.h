@@ -56,10 +56,6 @@ Decoded<Message> decode_checked(std::span<const std::uint8_t> bytes) {
 
 /// The bytes of a message as they travel and as they are logged.
 template <class Message>
-std::vector<std::uint8_t> encode(const Message& message) {
-  std::vector<std::uint8_t> bytes(static_cast<std::size_t>(message.getEncodedSize()));
-  message.encode(bytes.data(), 0, static_cast<int>(bytes.size()));
-  return bytes;
-}
+std::vector<std::uint8_t> encode(const Message& message);
 
 }  // namespace nextview

@@ -1,7 +1,7 @@
 #include "lcmtypes/validate.h"
 
-#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <numbers>
 
 #include "lcmtypes/validate_checks.h"
@@ -71,10 +71,18 @@ void check_part(Checks& checks, const range_image_t& image) {
                  "first or last pixels in the wrong part");
 }
 
-bool is_range(float range_m, double range_max_m) {
-  // NaN and +inf are said on purpose: invalid and no return.
-  return std::isnan(range_m) || (std::isinf(range_m) && range_m > 0.0F) ||
-         (range_m >= 0.0F && range_m <= range_max_m + kRangeTolerance_m);
+// NaN and +inf are said on purpose: invalid and no return. The loop goes on to the end, wrong or
+// not, because only then compilers make vectors of it.
+bool are_ranges(const std::vector<float>& range_m, double range_max_m) {
+  const double longest_m = range_max_m + kRangeTolerance_m;
+  int wrong = 0;
+  for (const float m : range_m) {
+    const int is_finite = m <= std::numeric_limits<float>::max();
+    const int is_beyond = static_cast<double>(m) > longest_m;
+    const int is_negative = m < 0.0F;
+    wrong |= is_negative | (is_finite & is_beyond);
+  }
+  return wrong == 0;
 }
 
 }  // namespace
@@ -135,9 +143,8 @@ std::string check(const range_image_t& image) {
   checks.finite("position_m", image.position_m);
   check_angles(checks, image.pan_rad, image.tilt_rad);
   checks.require(is_rotation(image.world_from_sensor), "world_from_sensor is not a rotation");
-  const auto wrong = std::ranges::find_if_not(
-      image.range_m, [&](float range_m) { return is_range(range_m, image.range_max_m); });
-  checks.require(wrong == image.range_m.end(), "a range is negative, -inf or beyond range_max_m");
+  checks.require(are_ranges(image.range_m, image.range_max_m),
+                 "a range is negative, -inf or beyond range_max_m");
   checks.not_negative("scan_wall_s", image.scan_wall_s);
   return checks.reason();
 }

@@ -1,6 +1,8 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <optional>
 #include <random>
 
 namespace nextview {
@@ -17,27 +19,33 @@ enum class RandomPurpose : std::uint32_t {
 /// standard's distributions are not fixed, so the mappings to numbers are here.
 class RandomStream {
  public:
-  RandomStream(std::int64_t seed, int view, int attempt, RandomPurpose purpose) {
-    const auto bits = static_cast<std::uint64_t>(seed);
-    std::seed_seq sequence{static_cast<std::uint32_t>(bits), static_cast<std::uint32_t>(bits >> 32),
-                           static_cast<std::uint32_t>(view), static_cast<std::uint32_t>(attempt),
-                           static_cast<std::uint32_t>(purpose)};
-    engine_.seed(sequence);
-  }
+  RandomStream(std::int64_t seed, int view, int attempt, RandomPurpose purpose)
+      : seed_{static_cast<std::uint32_t>(seed), static_cast<std::uint32_t>(seed >> 32),
+              static_cast<std::uint32_t>(view), static_cast<std::uint32_t>(attempt),
+              static_cast<std::uint32_t>(purpose)} {}
 
   /// Uniform in [0, 1), a multiple of 2^-53.
-  double uniform() { return static_cast<double>(engine_() >> 11) * 0x1.0p-53; }
+  double uniform() { return static_cast<double>(draw() >> 11) * 0x1.0p-53; }
 
   /// Uniform in {0, ..., count - 1}; count > 0. Lemire's multiplication, its bias below 2^-32.
   std::uint32_t below(std::uint32_t count) {
-    return static_cast<std::uint32_t>(((engine_() >> 32) * count) >> 32);
+    return static_cast<std::uint32_t>(((draw() >> 32) * count) >> 32);
   }
 
   /// Standard normal (Box and Muller); uses the platform's log and cos.
   double gaussian();
 
  private:
-  std::mt19937_64 engine_;
+  // Seeded by the first draw: seeding takes as long as casting two hundred rays, and a scan without
+  // noise draws nothing.
+  std::uint64_t draw() {
+    if (!engine_) seed_engine();
+    return (*engine_)();
+  }
+  void seed_engine();
+
+  std::array<std::uint32_t, 5> seed_;
+  std::optional<std::mt19937_64> engine_;
 };
 
 }  // namespace nextview

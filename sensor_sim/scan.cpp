@@ -4,17 +4,15 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <span>
 #include <stdexcept>
 #include <vector>
 
+#include "sensor_sim/measured_range.h"
+#include "sensor_sim/strip_caster.h"
+
 namespace nextview {
 namespace {
-
-// A packet is a tile of neighbouring pixels, whose rays meet much the same boxes of Embree's tree;
-// the squarer the tile, the better.
-constexpr int kTileColumns = 4;
-constexpr int kTileRows = 4;
-static_assert(kTileColumns * kTileRows == Scene::kPacketSize);
 
 void check(const RayTable& rays, const RangeLimits& limits, const SensorPose& pose,
            double range_noise_m) {
@@ -34,84 +32,13 @@ void check(const RayTable& rays, const RangeLimits& limits, const SensorPose& po
   }
 }
 
-// The rays of all pixels in world directions, tile by tile along a strip of kTileRows rows. Where
-// a tile reaches over the image's edge, the pixels of the edge are cast again.
-class StripCaster {
- public:
-  StripCaster(const Scene& scene, const RayTable& rays, const Eigen::Matrix3d& world_from_sensor,
-              const Eigen::Vector3d& position_m)
-      : scene_(scene),
-        rays_(rays),
-        world_from_sensor_(world_from_sensor),
-        origin_m_(position_m.cast<float>()),
-        directions_(static_cast<std::size_t>((rays.columns() + kTileColumns - 1) / kTileColumns)),
-        distances_(directions_.size()),
-        column_sin_(rays.column_sin),
-        column_cos_(rays.column_cos) {
-    column_sin_.resize(directions_.size() * kTileColumns, column_sin_.back());
-    column_cos_.resize(directions_.size() * kTileColumns, column_cos_.back());
+// Noise is drawn pixel by pixel and is what takes the time here.
+void measure_noisy_ranges(const RangeLimits& limits, double range_noise_m, RandomStream& noise,
+                          std::span<float> distance_m) {
+  for (float& range_m : distance_m) {
+    const double error_m = range_noise_m * noise.gaussian();
+    range_m = measured_range(static_cast<double>(range_m) + error_m, limits);
   }
-
-  // Writes the distances of rows first_row .. first_row + kTileRows - 1 into a whole image.
-  void cast(int first_row, std::vector<float>& distance_m) {
-    for (int j = 0; j < kTileRows; ++j) {
-      fill_row(std::min(first_row + j, rays_.rows() - 1), j);
-    }
-    scene_.cast(origin_m_, directions_, distances_);
-    for (int j = 0; j < kTileRows && first_row + j < rays_.rows(); ++j) {
-      const auto row = static_cast<std::size_t>(first_row + j);
-      const auto columns = static_cast<std::size_t>(rays_.columns());
-      for (std::size_t u = 0; u < columns; ++u) {
-        distance_m[row * columns + u] = distances_[u / kTileColumns].m[lane(u, j)];
-      }
-    }
-  }
-
- private:
-  static std::size_t lane(std::size_t u, int j) {
-    return static_cast<std::size_t>(j) * kTileColumns + u % kTileColumns;
-  }
-
-  // world_from_sensor · n_uv (eq. 1 and 5), the part common to a row taken out:
-  // n_uv = cos(alpha_u) Rx(beta_v) y - sin(alpha_u) x.
-  void fill_row(int v, int j) {
-    const auto row = static_cast<std::size_t>(v);
-    const Eigen::Vector3d row_axis = rays_.row_cos[row] * world_from_sensor_.col(1) +
-                                     rays_.row_sin[row] * world_from_sensor_.col(2);
-    const Eigen::Vector3d right = world_from_sensor_.col(0);
-    for (std::size_t tile = 0; tile < directions_.size(); ++tile) {
-      const double* sine = &column_sin_[tile * kTileColumns];
-      const double* cosine = &column_cos_[tile * kTileColumns];
-      const auto project = [&](int axis, float* lanes) {
-        for (std::size_t i = 0; i < kTileColumns; ++i) {
-          lanes[i] = static_cast<float>(cosine[i] * row_axis[axis] - sine[i] * right[axis]);
-        }
-      };
-      const std::size_t first_lane = lane(0, j);
-      project(0, &directions_[tile].x[first_lane]);
-      project(1, &directions_[tile].y[first_lane]);
-      project(2, &directions_[tile].z[first_lane]);
-    }
-  }
-
-  const Scene& scene_;
-  const RayTable& rays_;
-  const Eigen::Matrix3d& world_from_sensor_;
-  Eigen::Vector3f origin_m_;
-  std::vector<Scene::Directions> directions_;
-  std::vector<Scene::Distances> distances_;
-  std::vector<double> column_sin_;  // of the ray table, the last one repeated to fill the last tile
-  std::vector<double> column_cos_;
-};
-
-float measured_range(double distance_m, const RangeLimits& limits) {
-  if (distance_m < limits.min_m) {
-    return std::numeric_limits<float>::quiet_NaN();
-  }
-  if (distance_m > limits.max_m) {
-    return std::numeric_limits<float>::infinity();
-  }
-  return quantise_range(distance_m);
 }
 
 constexpr int kSpreadDirections = 2048;
@@ -163,15 +90,19 @@ RangeImage scan(const Scene& scene, const RayTable& rays, const RangeLimits& lim
   image.position_m = pose.position_m;
   image.rays = rays;
   image.limits = limits;
-  image.range_m.resize(rays.pixels());
+  image.range_m.reserve(rays.pixels());
 
   StripCaster caster(scene, image.rays, image.world_from_sensor, image.position_m);
-  for (int row = 0; row < rays.rows(); row += kTileRows) {
-    caster.cast(row, image.range_m);
-  }
-  for (float& range_m : image.range_m) {
-    const double error_m = range_noise_m > 0.0 ? range_noise_m * noise.gaussian() : 0.0;
-    range_m = measured_range(static_cast<double>(range_m) + error_m, limits);
+  for (int row = 0; row < rays.rows(); row += StripCaster::kRows) {
+    const std::size_t done = image.range_m.size();
+    image.range_m.resize(done + caster.pixels(row));
+    const std::span<float> strip = std::span(image.range_m).subspan(done);
+    caster.cast(row, strip);
+    if (range_noise_m > 0.0) {
+      measure_noisy_ranges(limits, range_noise_m, noise, strip);
+    } else {
+      measure_ranges(limits, strip);
+    }
   }
   return image;
 }

@@ -1,6 +1,7 @@
 #include "sensor_sim/sensor_sim_process.h"
 
 #include <cmath>
+#include <utility>
 
 #include "sensor_sim/range_image_message.h"
 #include "sensor_sim/scan.h"
@@ -33,9 +34,9 @@ bool SensorSimProcess::step() {
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
 
   const std::int64_t utime = arrival.utime + std::llround(config_.scan_duration_s * 1e6);
-  for (const range_image_t& message :
+  for (range_image_t& message :
        range_image_messages(image, arrival.view, arrival.attempt, utime, wall.count())) {
-    bus_.publish(message);
+    bus_.publish(std::move(message));
   }
   return true;
 }

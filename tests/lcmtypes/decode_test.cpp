@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <iostream>
 #include <limits>
 #include <random>
@@ -49,6 +50,19 @@ TYPED_TEST(EveryType, SurvivesTheRoundTripUnchanged) {
   const Decoded<TypeParam> decoded = decode_checked<TypeParam>(bytes);
   ASSERT_TRUE(decoded.message) << decoded.reason;
   EXPECT_EQ(encode(*decoded.message), bytes);
+}
+
+template <class Message>
+Bytes generated_encoding(const Message& message) {
+  Bytes bytes(static_cast<std::size_t>(message.getEncodedSize()));
+  EXPECT_EQ(message.encode(bytes.data(), 0, static_cast<int>(bytes.size())),
+            static_cast<int>(bytes.size()));
+  return bytes;
+}
+
+TYPED_TEST(EveryType, IsEncodedAsTheGeneratedCodeDoes) {
+  const auto message = example<TypeParam>();
+  EXPECT_EQ(encode(message), generated_encoding(message));
 }
 
 TYPED_TEST(EveryType, IsRefusedWhenCutShortAnywhereOrTooLong) {
@@ -155,6 +169,27 @@ TYPED_TEST(EveryType, MakesTheDecoderNeitherCrashNorAllocateWhateverItsBytes) {
   EXPECT_GT(accepted, 0);  // a bit of utime may be anything
   EXPECT_LE(largest_allocation(), 16 * (original.size() + 40) + 4096);
   std::cout << kCases << " mutations: " << accepted << " accepted, " << refused << " refused\n";
+}
+
+// Any bits, every infinity and NaN among them: encoding is not where a range is judged.
+TEST(Encode, RangeImagesOfAnySizeAndBitsAsTheGeneratedCodeDoes) {
+  std::mt19937_64 random(2);
+  for (int pixels = 0; pixels < 200; ++pixels) {
+    auto image = example<range_image_t>();
+    image.columns = static_cast<std::int32_t>(random() % 50);
+    image.rows = static_cast<std::int32_t>(random() % 50);
+    image.pixels = pixels;
+    for (auto* table : {&image.column_sin, &image.column_cos, &image.row_sin, &image.row_cos}) {
+      table->clear();
+      while (table->size() < 50) table->push_back(std::bit_cast<double>(random()));
+    }
+    image.range_m.clear();
+    while (image.range_m.size() < static_cast<std::size_t>(pixels)) {
+      image.range_m.push_back(std::bit_cast<float>(static_cast<std::uint32_t>(random())));
+    }
+    image.scan_wall_s = std::bit_cast<double>(random());
+    EXPECT_EQ(encode(image), generated_encoding(image)) << pixels;
+  }
 }
 
 TEST(Channels, HaveDistinctNamesAndFingerprints) {

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr float kNanF = std::numeric_limits<float>::quiet_NaN();
 constexpr float kInfF = std::numeric_limits<float>::infinity();
 
 /// A change to a valid message that makes it impossible.
@@ -109,6 +110,29 @@ TEST(Validate, RangeImage) {
       {"range of -inf", [](range_image_t& m) { m.range_m[0] = -kInfF; }},
       {"range beyond the limit", [](range_image_t& m) { m.range_m[0] = 30.1F; }},
   });
+}
+
+// A part of 60 ranges, one of them set to a value: any place will do, and none hides a wrong one.
+TEST(Validate, RangesWhereverTheyStand) {
+  auto image = example<range_image_t>();
+  image.rows = 20;
+  image.pixels = 60;
+  image.row_sin.assign(20, 0.0);
+  image.row_cos.assign(20, 1.0);
+  image.range_m.assign(60, kInfF);
+  ASSERT_EQ(check(image), "");
+  for (float& range_m : image.range_m) {
+    for (const float right : {0.0F, -0.0F, 0.01F, 30.0F, 30.0009F, kNanF, kInfF}) {
+      range_m = right;
+      EXPECT_EQ(check(image), "") << right;
+    }
+    for (const float wrong : {-std::numeric_limits<float>::denorm_min(), -1.0F, -kInfF, 30.0011F,
+                              std::numeric_limits<float>::max()}) {
+      range_m = wrong;
+      EXPECT_EQ(check(image), "a range is negative, -inf or beyond range_max_m") << wrong;
+    }
+    range_m = kNanF;
+  }
 }
 
 TEST(Validate, Commit) {

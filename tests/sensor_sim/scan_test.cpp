@@ -2,12 +2,16 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <vector>
 
 #include "sensor_sim/brute_force_scene.h"
+#include "sensor_sim/measured_range.h"
 #include "sensor_sim/mesh_file.h"
 #include "tests/sensor_sim/test_worlds.h"
 
@@ -100,6 +104,64 @@ TEST(Scan, EveryPixelIsThatOfBruteForce) {
     }
   }
   EXPECT_EQ(pixels, 10 * (8 * 4 + 7 * 5 + 2 * 2 + 3 * 9 + 64 * 30));
+}
+
+// What scan() should measure, to the last bit, worked out one pixel after the other in tiles of
+// 4 x 4: the rays by eq. 1 and 5, their packets cast one by one, measured_range.
+std::vector<float> plain_ranges(const Scene& scene, const RayTable& rays, const RangeLimits& limits,
+                                const SensorPose& pose) {
+  const Eigen::Matrix3d rotation = world_from_sensor_rotation(pose.pan_rad, pose.tilt_rad);
+  std::vector<float> range_m(rays.pixels());
+  for (int v0 = 0; v0 < rays.rows(); v0 += 4) {
+    for (int u0 = 0; u0 < rays.columns(); u0 += 4) {
+      Scene::Directions directions;
+      Scene::Distances distances;
+      for (int i = 0; i < 16; ++i) {
+        const auto u = static_cast<std::size_t>(std::min(u0 + i % 4, rays.columns() - 1));
+        const auto v = static_cast<std::size_t>(std::min(v0 + i / 4, rays.rows() - 1));
+        const Eigen::Vector3d row_axis =
+            rays.row_cos[v] * rotation.col(1) + rays.row_sin[v] * rotation.col(2);
+        const Eigen::Vector3d direction =
+            rays.column_cos[u] * row_axis - rays.column_sin[u] * rotation.col(0);
+        const auto lane = static_cast<std::size_t>(i);
+        directions.x[lane] = static_cast<float>(direction.x());
+        directions.y[lane] = static_cast<float>(direction.y());
+        directions.z[lane] = static_cast<float>(direction.z());
+      }
+      scene.cast(pose.position_m.cast<float>(), {&directions, 1}, {&distances, 1});
+      for (int i = 0; i < 16; ++i) {
+        const int u = u0 + i % 4;
+        const int v = v0 + i / 4;
+        if (u < rays.columns() && v < rays.rows()) {
+          range_m[static_cast<std::size_t>(v * rays.columns() + u)] =
+              measured_range(static_cast<double>(distances.m[static_cast<std::size_t>(i)]), limits);
+        }
+      }
+    }
+  }
+  return range_m;
+}
+
+TEST(Scan, EveryPixelIsThePlainOneToTheLastBit) {
+  const Scene scene = room();
+  RandomStream random = random_stream(8);
+  int pixels = 0;
+  for (const auto& [columns, rows] :
+       {std::pair{8, 4}, {7, 5}, {2, 2}, {3, 9}, {64, 30}, {2, 301}, {301, 2}, {121, 79}}) {
+    const RayTable rays = make_ray_table(TiltedLineScan::with_aperture(columns, rows, 1.0));
+    for (int i = 0; i < 40; ++i) {
+      const SensorPose pose{Eigen::Vector3d(0, 0.5, 1) + random_point(random, 0.9),
+                            2.0 * kPi * random.uniform(), kPi * (random.uniform() - 0.5)};
+      const RangeLimits limits{0.3, 1.5};
+      const std::vector<float> range_m = scan_without_noise(scene, rays, pose, limits).range_m;
+      const std::vector<float> plain_m = plain_ranges(scene, rays, limits, pose);
+      ASSERT_EQ(range_m.size(), plain_m.size());
+      EXPECT_EQ(std::memcmp(range_m.data(), plain_m.data(), range_m.size() * sizeof(float)), 0)
+          << columns << " x " << rows << ", pose " << i;
+      pixels += static_cast<int>(range_m.size());
+    }
+  }
+  EXPECT_EQ(pixels, 40 * (8 * 4 + 7 * 5 + 2 * 2 + 3 * 9 + 64 * 30 + 4 * 301 + 121 * 79));
 }
 
 TEST(Scan, TooNearIsInvalidAndTooFarIsNoReturn) {
