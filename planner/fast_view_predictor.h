@@ -30,6 +30,9 @@ class FastViewPredictor : public RasterViewPredictor {
                std::span<ViewCounts> per_orientation) override;
   void map_changed(const VoxelMap& map, std::span<const std::uint32_t> changed_slots,
                    std::span<const std::uint32_t> updated_surfaces) override;
+  int free_distance(const VoxelIndex& voxel) const override {
+    return field_ ? field_->free_distance(voxel) : 0;
+  }
 
  private:
   // Rays of all orientations that drive in the same direction.

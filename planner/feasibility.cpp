@@ -74,8 +74,12 @@ std::vector<VoxelIndex> voxels_along(const VoxelGrid& grid, const Eigen::Vector3
 }
 
 FeasibleSpace::FeasibleSpace(const VoxelMap& map, const FeasibilityParameters& parameters,
-                             const Eigen::Vector3d& present_m, std::span<const SensorPose> refused)
-    : map_(map), parameters_(parameters), present_m_(present_m) {
+                             const Eigen::Vector3d& present_m, std::span<const SensorPose> refused,
+                             FreeDistance free_distance)
+    : map_(map),
+      parameters_(parameters),
+      present_m_(present_m),
+      free_distance_(std::move(free_distance)) {
   parameters.check();
   present_ = map.grid().voxel_of(present_m);
   if (!map.contains(present_)) {
@@ -88,15 +92,18 @@ FeasibleSpace::FeasibleSpace(const VoxelMap& map, const FeasibilityParameters& p
   body_ = squared_voxels(parameters.body_radius_m, voxel_size_m);
   departure_ = squared_voxels(parameters.departure_m, voxel_size_m);
   const int limit = std::max(clear_, body_);
-  const int reach = static_cast<int>(std::sqrt(static_cast<double>(limit)));
-  for (int k = -reach; k <= reach; ++k) {
-    for (int j = -reach; j <= reach; ++j) {
-      for (int i = -reach; i <= reach; ++i) {
+  reach_ = static_cast<int>(std::sqrt(static_cast<double>(limit)));
+  for (int k = -reach_; k <= reach_; ++k) {
+    for (int j = -reach_; j <= reach_; ++j) {
+      for (int i = -reach_; i <= reach_; ++i) {
         const VoxelIndex step(i, j, k);
         if (step.squaredNorm() < limit) offsets_.push_back({step, step.squaredNorm()});
       }
     }
   }
+  std::stable_sort(offsets_.begin(), offsets_.end(), [](const Offset& a, const Offset& b) {
+    return a.squared_length < b.squared_length;
+  });
   for (int axis = 0; axis < 3; ++axis) {
     for (const int sign : {-1, 1}) {
       for (const Offset& offset : offsets_) {
@@ -149,6 +156,10 @@ const FeasibleSpace::Surroundings& FeasibleSpace::surroundings(const VoxelIndex&
   const auto [entry, inserted] = known_.try_emplace(map_.slot(voxel));
   Surroundings& result = entry->second;
   if (!inserted) return result;
+  if (free_distance_ && free_distance_(voxel) > reach_) {
+    result = {clear_, false};
+    return result;
+  }
   if (neighbour != nullptr) {
     const auto known = known_.find(map_.slot(*neighbour));
     if (known != known_.end() && is_clear(known->second)) {
@@ -166,7 +177,8 @@ const FeasibleSpace::Surroundings& FeasibleSpace::surroundings(const VoxelIndex&
 FeasibleSpace::Surroundings FeasibleSpace::look_around(const VoxelIndex& voxel,
                                                        const std::vector<Offset>& offsets) const {
   Surroundings result{clear_, false};
-  for (const auto& [step, squared_length] : offsets) {
+  for (const auto& [step, squared_length] : offsets) {  // nearest first
+    if (squared_length >= std::max(body_, result.nearest_occupied)) break;
     const VoxelIndex neighbour = voxel + step;
     const Label label = map_.label(neighbour);
     if (label == Label::Empty) continue;
@@ -174,6 +186,8 @@ FeasibleSpace::Surroundings FeasibleSpace::look_around(const VoxelIndex& voxel,
       result.nearest_occupied = std::min(result.nearest_occupied, squared_length);
     } else if (squared_length < body_ && (neighbour - present_).squaredNorm() >= departure_) {
       result.unknown_near = true;
+      // No path leads through here, so nothing else matters; but one begins at the present voxel.
+      if (voxel != present_) break;
     }
   }
   return result;

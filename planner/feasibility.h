@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <functional>
 #include <limits>
 #include <span>
 #include <unordered_map>
@@ -57,20 +58,27 @@ std::vector<VoxelIndex> voxels_along(const VoxelGrid& grid, const Eigen::Vector3
 /// from the present position to the refused goal, where that is less).
 class FeasibleSpace {
  public:
+  /// For a voxel a Chebyshev distance (the larger of |di|, |dj|, |dk|) within which everything is
+  /// Empty: all voxels that are nearer than that. 0 when it is not known without looking.
+  using FreeDistance = std::function<int(const VoxelIndex&)>;
+
   /// The map must outlive this object and not change.
   /// @param present_m where the sensor is, inside the map's window
   /// @param refused goals of this view the base has refused
+  /// @param free_distance saves looking around where nothing is near; the answers do not depend on
+  /// it
   /// @throws std::invalid_argument for parameters that cannot be or a present position outside
   FeasibleSpace(const VoxelMap& map, const FeasibilityParameters& parameters,
-                const Eigen::Vector3d& present_m, std::span<const SensorPose> refused);
+                const Eigen::Vector3d& present_m, std::span<const SensorPose> refused,
+                FreeDistance free_distance = {});
 
   /// Whether the sensor may be at a position and get there straight from where it is.
   bool reachable(const Eigen::Vector3d& position_m);
 
  private:
   struct Surroundings {
-    int nearest_occupied = 0;  // squared distance in voxels, at most clear_
-    bool unknown_near = false;
+    int nearest_occupied = 0;   // squared distance in voxels, at most clear_
+    bool unknown_near = false;  // then nearest_occupied may be larger than it is
   };
   struct Offset {
     VoxelIndex step;
@@ -99,7 +107,9 @@ class FeasibleSpace {
   int clear_;      // squared distances below this are nearer than the clearance; voxels
   int body_;       // the same for the body radius
   int departure_;  // and for the departure
-  std::vector<Offset> offsets_;  // of all voxels nearer than clearance or body radius
+  int reach_;      // the largest of |di|, |dj|, |dk| that is looked at
+  FreeDistance free_distance_;
+  std::vector<Offset> offsets_;  // of all voxels nearer than clearance or body radius, by length
   std::array<std::vector<Offset>, 6> entered_;  // those a step along an axis brings near, by step
   std::unordered_map<std::size_t, Surroundings> known_;  // by slot, as far as asked for
 };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -48,12 +49,12 @@ class FreeSpaceField {
            (static_cast<std::size_t>(cell[2]) << shift_[2]);
   }
   std::uint8_t at(const VoxelIndex& index) const { return bytes_[offset(index)]; }
+  /// The Chebyshev distance within which everything around a voxel is Empty; 0 when it is not
+  /// itself.
+  int free_distance(const VoxelIndex& index) const { return at(index) & kMaxJump; }
   /// How many steps a walk that starts in a voxel may take at once, at least 1: the first step
   /// leaves the voxel whatever it is.
-  int steps_from(const VoxelIndex& index) const {
-    const std::uint8_t byte = at(index);
-    return byte <= kMaxJump ? byte : 1;
-  }
+  int steps_from(const VoxelIndex& index) const { return std::max(free_distance(index), 1); }
   /// All bytes, with three more behind the last so that four can be read from any offset.
   const std::uint8_t* bytes() const { return bytes_.data(); }
   /// log2 of the distance in bytes between neighbours along x, y, z.

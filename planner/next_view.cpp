@@ -117,7 +117,8 @@ std::optional<Decision> decide_next_view(const VoxelMap& map, ViewPredictor& pre
   if (parameters.use_quality && !predictor.counts_quality()) {
     throw std::invalid_argument("the view predictor does not count quality, but use_quality is on");
   }
-  FeasibleSpace space(map, parameters.feasibility, present.position_m, refused);
+  FeasibleSpace space(map, parameters.feasibility, present.position_m, refused,
+                      [&](const VoxelIndex& voxel) { return predictor.free_distance(voxel); });
   PositionFitness fitness_at(map, predictor, parameters.use_quality, present);
   const auto value = [&](const Eigen::Vector3d& position_m) {
     if (!space.reachable(position_m)) return kInfeasible;

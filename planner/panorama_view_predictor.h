@@ -35,6 +35,9 @@ class PanoramaViewPredictor : public RasterViewPredictor {
                std::span<ViewCounts> per_orientation) override;
   void map_changed(const VoxelMap& map, std::span<const std::uint32_t> changed_slots,
                    std::span<const std::uint32_t> updated_surfaces) override;
+  int free_distance(const VoxelIndex& voxel) const override {
+    return field_ ? field_->free_distance(voxel) : 0;
+  }
 
  private:
   static constexpr int kCells = 6 * kFaceSide * kFaceSide;

@@ -70,6 +70,10 @@ class ViewPredictor {
   virtual void map_changed(const VoxelMap& map, std::span<const std::uint32_t> changed_slots,
                            std::span<const std::uint32_t> updated_surfaces) = 0;
 
+  /// A by-product for FeasibleSpace::FreeDistance, of the map last predicted in or told of: how
+  /// near to a voxel of its window everything is Empty, or 0 when the predictor does not know.
+  virtual int free_distance(const VoxelIndex&) const { return 0; }
+
  protected:
   ViewPredictor(std::vector<Orientation> orientations, bool counts_quality)
       : orientations_(std::move(orientations)), counts_quality_(counts_quality) {}

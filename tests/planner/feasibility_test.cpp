@@ -6,6 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "planner/free_space_field.h"
 #include "sensor_sim/random_stream.h"
 
 namespace nextview {
@@ -185,10 +186,14 @@ TEST_F(EmptyHall, AgreesWithLookingAllAroundEveryVoxel) {
            static_cast<Label>(block % 2 == 0 ? below(3) : 4));
     }
     FeasibleSpace space(map, parameters, present_m, refused);  // remembers from one to the next
+    const FreeSpaceField field(map);
+    FeasibleSpace told(map, parameters, present_m, refused,
+                       [&](const VoxelIndex& voxel) { return field.free_distance(voxel); });
     for (int i = 0; i < 80; ++i) {
       const Vector3d to_m(4.0 * random.uniform(), 4.0 * random.uniform(), 2.0 * random.uniform());
       const bool expected = plainly_reachable(map, parameters, present_m, to_m);
       ASSERT_EQ(space.reachable(to_m), expected) << "round " << round << ", " << to_m.transpose();
+      ASSERT_EQ(told.reachable(to_m), expected) << "round " << round << ", " << to_m.transpose();
       reached += expected;
       ++cases;
     }
