@@ -58,7 +58,9 @@ HWY_INLINE std::int32_t* step(const LineBundle::Layout& layout, std::int32_t k, 
   for (std::size_t axis = 0; axis < 3; ++axis) {
     lanes.position[axis] = hn::Add(lanes.position[axis], lanes.slope[axis]);
   }
-  return to + hn::CompressStore(slot, hn::Not(repeats), d, to);
+  const auto kept = hn::Not(repeats);
+  hn::StoreU(hn::Compress(slot, kept), d, to);  // beyond the kept ones: overwritten
+  return to + hn::CountTrue(d, kept);
 }
 
 std::size_t WalkBundle(const LineBundle::Layout& layout, const LineBundle::Stretches& stretches,
