@@ -43,9 +43,15 @@ HWY_INLINE Vector slot_of(const LineBundle::Layout& layout, const Lanes& lanes) 
   return hn::Or(hn::Or(part(0), part(1)), part(2));
 }
 
+// The labels as words that begin at each slot, and which labels count.
+struct Below {
+  const std::int32_t* labels;
+  std::int32_t label;
+};
+
 // One step of a vector of lines; returns where the next slots go.
-HWY_INLINE std::int32_t* step(const LineBundle::Layout& layout, std::int32_t k, Lanes& lanes,
-                              std::int32_t* to) {
+HWY_INLINE std::int32_t* step(const LineBundle::Layout& layout, const Below& below, std::int32_t k,
+                              Lanes& lanes, std::int32_t* to) {
   const Tag d;
   const Vector none = hn::Set(d, -1);
   const auto walking = hn::Gt(lanes.voxels, hn::Set(d, k));
@@ -58,13 +64,17 @@ HWY_INLINE std::int32_t* step(const LineBundle::Layout& layout, std::int32_t k, 
   for (std::size_t axis = 0; axis < 3; ++axis) {
     lanes.position[axis] = hn::Add(lanes.position[axis], lanes.slope[axis]);
   }
-  const auto kept = hn::Not(repeats);
+  const Vector words = hn::GatherOffset(d, below.labels, hn::IfThenZeroElse(repeats, slot));
+  const auto counts = hn::Lt(hn::And(words, hn::Set(d, 0xff)), hn::Set(d, below.label));
+  const auto kept = hn::AndNot(repeats, counts);
   hn::StoreU(hn::Compress(slot, kept), d, to);  // beyond the kept ones: overwritten
   return to + hn::CountTrue(d, kept);
 }
 
 std::size_t WalkBundle(const LineBundle::Layout& layout, const LineBundle::Stretches& stretches,
-                       std::int32_t longest, std::uint32_t* slots) {
+                       std::int32_t longest, const std::uint8_t* labels, std::int32_t below_label,
+                       std::uint32_t* slots) {
+  const Below below{reinterpret_cast<const std::int32_t*>(labels), below_label};
   const Tag d;
   constexpr std::size_t kVectors = LineBundle::kLines / hn::MaxLanes(Tag());
   Lanes lanes[kVectors];
@@ -72,7 +82,7 @@ std::size_t WalkBundle(const LineBundle::Layout& layout, const LineBundle::Stret
   std::int32_t* const begin = reinterpret_cast<std::int32_t*>(slots);
   std::int32_t* to = begin;
   for (std::int32_t k = 0; k < longest; ++k) {
-    for (Lanes& some : lanes) to = step(layout, k, some, to);
+    for (Lanes& some : lanes) to = step(layout, below, k, some, to);
   }
   return static_cast<std::size_t>(to - begin);
 }
@@ -105,14 +115,15 @@ void LineBundle::add(const IntegerLine& line, int first, int last) {
   ++size_;
 }
 
-LineBundle::Slots LineBundle::take_slots() {
+LineBundle::Slots LineBundle::take_slots(const VoxelMap& map, Label below) {
   // A vector's worth of room beyond the end for those who store whole vectors.
   const std::size_t room = (static_cast<std::size_t>(longest_) + 1) * kLines;
   if (slots_.size() < room) slots_.resize(room);
   std::fill(stretches_.voxels.begin() + static_cast<std::ptrdiff_t>(size_), stretches_.voxels.end(),
             0);
-  const std::size_t size =
-      HWY_DYNAMIC_DISPATCH(WalkBundle)(layout_, stretches_, longest_, slots_.data());
+  const std::size_t size = HWY_DYNAMIC_DISPATCH(WalkBundle)(
+      layout_, stretches_, longest_, reinterpret_cast<const std::uint8_t*>(map.labels().data()),
+      static_cast<std::int32_t>(below), slots_.data());
   size_ = 0;
   longest_ = 0;
   return {slots_.data(), size};

@@ -23,7 +23,7 @@ class LineBundle {
  public:
   static constexpr std::size_t kLines = 16;
 
-  /// For lines in this map.
+  /// For lines in this map, or another of the same shape.
   explicit LineBundle(const VoxelMap& map);
 
   /// Adds the voxels k = first ... last of a line; they must lie inside the window. None if last <
@@ -31,15 +31,15 @@ class LineBundle {
   void add(const IntegerLine& line, int first, int last);
   bool full() const { return size_ == kLines; }
 
-  /// The slots of all voxels of all stretches, each at least once, and empties the bundle. What
-  /// repeats, and how often, depends on the instruction set; the order in which slots turn up first
-  /// does not.
+  /// The slots of all voxels of all stretches whose labels are below a given one, each at least
+  /// once, and empties the bundle. What repeats, and how often, depends on the instruction set; the
+  /// order in which slots turn up first does not.
   /// @return as many as slots.size() says; valid until the next call, the caller may write to it
   struct Slots {
     std::uint32_t* begin;
     std::size_t size;
   };
-  Slots take_slots();
+  Slots take_slots(const VoxelMap& map, Label below);
 
   /// What the kernel needs of the map: IntegerLine::at in slots.
   struct Layout {

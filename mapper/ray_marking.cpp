@@ -14,7 +14,7 @@ namespace {
 class Marker {
  public:
   Marker(VoxelMap& map, std::vector<std::uint32_t>& changed_slots)
-      : labels_(map.labels().data()), bundle_(map), changed_slots_(changed_slots) {}
+      : map_(map), bundle_(map), changed_slots_(changed_slots) {}
 
   // Raises the voxels k = first ... last of a line that are below a label to a new one, now or when
   // finish() is called. They must lie inside the window.
@@ -25,14 +25,16 @@ class Marker {
   }
 
   void finish(Label below, Label to) {
-    const auto [slots, size] = bundle_.take_slots();
+    Label* const labels = map_.labels().data();
+    const auto [slots, size] = bundle_.take_slots(map_, below);
     std::size_t count = 0;
+    // What repeats is below the label no more when it comes again.
     for (std::size_t n = 0; n < size; ++n) {
       const std::uint32_t slot = slots[n];
-      const auto label = static_cast<std::uint32_t>(labels_[slot]);
+      const auto label = static_cast<std::uint32_t>(labels[slot]);
       // In integers, so that no compiler makes a branch of it: no processor could foresee it.
       const std::uint32_t raised = label < static_cast<std::uint32_t>(below);
-      labels_[slot] = static_cast<Label>(label + (static_cast<std::uint32_t>(to) - label) * raised);
+      labels[slot] = static_cast<Label>(label + (static_cast<std::uint32_t>(to) - label) * raised);
       slots[count] = slot;  // overwritten by the next one unless this counts
       count += raised;
     }
@@ -40,7 +42,7 @@ class Marker {
   }
 
  private:
-  Label* labels_;
+  VoxelMap& map_;
   LineBundle bundle_;
   std::vector<std::uint32_t>& changed_slots_;
 };

@@ -18,8 +18,10 @@ struct Stretch {
   int last;
 };
 
-// The slots in the order they are first met: step by step, and line by line within a step.
-std::vector<std::uint32_t> first_meetings(const VoxelMap& map, const std::vector<Stretch>& all) {
+// The slots of labels below one in the order they are first met: step by step, and line by line
+// within a step.
+std::vector<std::uint32_t> first_meetings(const VoxelMap& map, const std::vector<Stretch>& all,
+                                          Label below) {
   std::vector<std::uint32_t> slots;
   std::set<std::uint32_t> met;
   for (int step = 0; step < 100'000; ++step) {
@@ -28,7 +30,7 @@ std::vector<std::uint32_t> first_meetings(const VoxelMap& map, const std::vector
       if (stretch.first + step > stretch.last) continue;
       any = true;
       const auto slot = static_cast<std::uint32_t>(map.slot(stretch.line.at(stretch.first + step)));
-      if (met.insert(slot).second) slots.push_back(slot);
+      if (met.insert(slot).second && map.labels()[slot] < below) slots.push_back(slot);
     }
     if (!any) break;
   }
@@ -51,7 +53,9 @@ VoxelMap random_map(RandomStream& random) {
     window.size[axis] = kSizes[random.below(8)];
     window.min[axis] = uniform_int(random, -400'000, 400'000);
   }
-  return {VoxelGrid(), window};
+  VoxelMap map(VoxelGrid(), window);
+  for (Label& label : map.labels()) label = static_cast<Label>(random.below(kLabelCount));
+  return map;
 }
 
 VoxelIndex random_voxel(const MapWindow& window, RandomStream& random) {
@@ -92,8 +96,9 @@ TEST(LineBundle, MeetsTheVoxelsOfItsLinesInOneOrderOnEveryInstructionSet) {
         const std::vector<Stretch> stretches = random_stretches(map, random);
         for (const Stretch& s : stretches) bundle.add(s.line, s.first, s.last);
         EXPECT_EQ(bundle.full(), stretches.size() == LineBundle::kLines);
-        const auto expected = first_meetings(map, stretches);
-        ASSERT_EQ(without_repeats(bundle.take_slots()), expected);
+        const auto below = static_cast<Label>(random.below(kLabelCount + 1));
+        const auto expected = first_meetings(map, stretches, below);
+        ASSERT_EQ(without_repeats(bundle.take_slots(map, below)), expected);
         voxels += static_cast<std::int64_t>(expected.size());
         ++bundles;
       }
@@ -110,8 +115,8 @@ TEST(LineBundle, IsEmptyOnceItsSlotsAreTaken) {
   LineBundle bundle(map);
   bundle.add(line_between({1, 2, 3}, {31, 12, 23}), 0, 30);
   bundle.add(line_between({1, 2, 3}, {31, 12, 23}), 5, 4);  // no voxel at all
-  EXPECT_EQ(bundle.take_slots().size, 31u);
-  EXPECT_EQ(bundle.take_slots().size, 0u);
+  EXPECT_EQ(bundle.take_slots(map, Label::Occluded).size, 31u);
+  EXPECT_EQ(bundle.take_slots(map, Label::Occluded).size, 0u);
 }
 
 }  // namespace
