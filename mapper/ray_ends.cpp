@@ -150,6 +150,7 @@ void add_points(const PixelRun& run, SurfaceVoxel& seen) {
 void RayEnds::collect(const RangeImage& image, const VoxelGrid& grid, const MapWindow& window) {
   sensor_ = grid.voxel_of(image.position_m);
   counts_ = {};
+  if (table_.empty()) make_table(image.range_m.size() / 8);  // seldom outgrown
   ends_.clear();
   for (const std::uint32_t place : used_) table_[place].key = kNoKey;
   used_.clear();
@@ -255,9 +256,13 @@ std::uint32_t RayEnds::number_of(const VoxelIndex& voxel, bool is_surface) {
   return table_[place].end;
 }
 
+void RayEnds::make_table(std::size_t places) {
+  table_.assign(std::bit_ceil(std::max<std::size_t>(1024, places)), {kNoKey, 0});
+}
+
 void RayEnds::grow_table() {
   const std::vector<TableEntry> old = table_;
-  table_.assign(std::max<std::size_t>(1024, 2 * old.size()), {kNoKey, 0});
+  make_table(2 * old.size());
   used_.clear();
   const std::size_t mask = table_.size() - 1;
   for (const TableEntry& entry : old) {

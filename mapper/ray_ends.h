@@ -56,6 +56,7 @@ class RayEnds {
   void add_run(const PixelRun& run, const MapWindow& window);
   RayEnd& end_of(const PixelRun& run, const VoxelIndex& voxel, bool is_surface);
   std::uint32_t number_of(const VoxelIndex& voxel, bool is_surface);
+  void make_table(std::size_t places);
   void grow_table();
 
   struct TableEntry {

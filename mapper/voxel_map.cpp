@@ -85,6 +85,7 @@ SurfaceVoxel& VoxelMap::surface_at(const VoxelIndex& index) {
   if (block == nullptr) {
     block = std::make_unique<SurfaceBlock>();
     block->entry.fill(SurfaceBlock::kNone);
+    block->voxels.reserve(kBlockSide);
   }
   std::uint16_t& entry = block->entry[entry_in_block(index)];
   if (entry == SurfaceBlock::kNone) {
