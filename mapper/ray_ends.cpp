@@ -150,7 +150,10 @@ void add_points(const PixelRun& run, SurfaceVoxel& seen) {
 void RayEnds::collect(const RangeImage& image, const VoxelGrid& grid, const MapWindow& window) {
   sensor_ = grid.voxel_of(image.position_m);
   counts_ = {};
-  if (table_.empty()) make_table(image.range_m.size() / 8);  // seldom outgrown
+  if (table_.empty()) {
+    make_table(image.range_m.size() / 8);  // seldom outgrown
+    ends_.reserve(table_.size() / 2);
+  }
   ends_.clear();
   for (const std::uint32_t place : used_) table_[place].key = kNoKey;
   used_.clear();
