@@ -8,6 +8,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "mapper/store_kept-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace nextview::HWY_NAMESPACE {
 namespace {
@@ -67,8 +69,7 @@ HWY_INLINE std::int32_t* step(const LineBundle::Layout& layout, const Below& bel
   const Vector words = hn::GatherOffset(d, below.labels, hn::IfThenZeroElse(repeats, slot));
   const auto counts = hn::Lt(hn::And(words, hn::Set(d, 0xff)), hn::Set(d, below.label));
   const auto kept = hn::AndNot(repeats, counts);
-  hn::StoreU(hn::Compress(slot, kept), d, to);  // beyond the kept ones: overwritten
-  return to + hn::CountTrue(d, kept);
+  return to + store_kept(d, slot, kept, to);
 }
 
 std::size_t WalkBundle(const LineBundle::Layout& layout, const LineBundle::Stretches& stretches,

@@ -6,6 +6,8 @@
 #include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
+#include "mapper/store_kept-inl.h"
+
 HWY_BEFORE_NAMESPACE();
 namespace nextview::HWY_NAMESPACE {
 namespace {
@@ -31,8 +33,7 @@ std::size_t FindBegins(int columns, const RowEnds& ends, std::int32_t* begins) {
     const auto too_long = hn::Eq(hn::And(column, hn::Set(d, 0xffff)), hn::Zero(d));
     const auto begin = hn::And(hn::Lt(column, hn::Set(d, columns)),
                                hn::Or(hn::Ne(differs, hn::Zero(d)), too_long));
-    hn::StoreU(hn::Compress(column, begin), d, begins + size);
-    size += hn::CountTrue(d, begin);
+    size += store_kept(d, column, begin, begins + size);
   }
   return size;
 }
