@@ -11,14 +11,10 @@ MapBlocks::MapBlocks(const VoxelMap& map) : window_(map.window()), shift_(map.sh
     mask_[axis] = static_cast<std::size_t>(map.sides()[axis] - 1);
     first_[a] = begin >> 3;
     counts_[axis] = static_cast<std::uint32_t>(((end - 1) >> 3) - first_[a] + 1);
-    place_[axis].resize(mask_[axis] + 1);
+    number_[axis].resize(mask_[axis] + 1);
     for (int index = begin; index < end; ++index) {
       const std::uint32_t block = static_cast<std::uint32_t>((index >> 3) - first_[a]);
-      std::uint32_t place = block * stride;
-      const int low = index & (kSide - 1);
-      if (low == 0) place |= std::uint32_t{1} << (kNumberBits + 2 * a);
-      if (low == kSide - 1) place |= std::uint32_t{1} << (kNumberBits + 2 * a + 1);
-      place_[axis][static_cast<std::size_t>(index) & mask_[axis]] = place;
+      number_[axis][static_cast<std::size_t>(index) & mask_[axis]] = block * stride;
     }
     stride *= counts_[axis];
   }
@@ -31,20 +27,23 @@ VoxelIndex MapBlocks::coordinate(std::uint32_t block) const {
   return first_ + VoxelIndex(static_cast<int>(x), static_cast<int>(y), static_cast<int>(z));
 }
 
-std::uint32_t MapBlocks::number(const VoxelIndex& coordinate) const {
-  const VoxelIndex offset = coordinate - first_;
-  std::uint32_t block = 0;
-  for (int axis = 2; axis >= 0; --axis) {
-    const std::uint32_t count = counts_[static_cast<std::size_t>(axis)];
-    if (static_cast<std::uint32_t>(offset[axis]) >= count) return size();
-    block = block * count + static_cast<std::uint32_t>(offset[axis]);
+std::array<std::uint32_t, 6> MapBlocks::neighbours(std::uint32_t block) const {
+  std::array<std::uint32_t, 6> numbers;
+  std::uint32_t along = block;
+  std::uint32_t stride = 1;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::uint32_t place = along % counts_[axis];
+    numbers[2 * axis] = place > 0 ? block - stride : size();
+    numbers[2 * axis + 1] = place + 1 < counts_[axis] ? block + stride : size();
+    along /= counts_[axis];
+    stride *= counts_[axis];
   }
-  return block;
+  return numbers;
 }
 
-std::array<MapBlocks::AxisSlots, 3> MapBlocks::slots_around(std::uint32_t block) const {
+std::array<MapBlocks::AxisSlots, 3> MapBlocks::slots(std::uint32_t block) const {
   std::array<AxisSlots, 3> slots;
-  const VoxelIndex corner = kSide * coordinate(block) - VoxelIndex::Ones();
+  const VoxelIndex corner = kSide * coordinate(block);
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int a = static_cast<int>(axis);
     for (std::size_t e = 0; e < slots[axis].size(); ++e) {
@@ -59,7 +58,7 @@ std::array<MapBlocks::AxisSlots, 3> MapBlocks::slots_around(std::uint32_t block)
 
 std::size_t MapBlocks::memory_bytes() const {
   std::size_t bytes = 0;
-  for (const auto& axis : place_) bytes += axis.capacity() * sizeof(std::uint32_t);
+  for (const auto& axis : number_) bytes += axis.capacity() * sizeof(std::uint32_t);
   return bytes;
 }
 

@@ -23,25 +23,19 @@ class MapBlocks {
   std::uint32_t size() const { return counts_[0] * counts_[1] * counts_[2]; }
   /// Absolute coordinate of a block.
   VoxelIndex coordinate(std::uint32_t block) const;
-  /// The number of a block by absolute coordinate, or size() when the window has no such block.
-  std::uint32_t number(const VoxelIndex& coordinate) const;
+  /// The blocks at the sides of a block, -x, +x, -y, +y, -z, +z; size() where the window has none.
+  std::array<std::uint32_t, 6> neighbours(std::uint32_t block) const;
 
-  /// Where a slot of the window lies: the number of its block in the low kNumberBits bits, and
-  /// above them one bit for each face of the block the voxel lies at (-x, +x, -y, +y, -z, +z).
-  static constexpr int kNumberBits = 26;
-  std::uint32_t place(std::size_t slot) const {
-    return place_[0][slot & mask_[0]] + place_[1][slot >> shift_[1] & mask_[1]] +
-           place_[2][slot >> shift_[2]];
-  }
-
+  /// The number of the block a slot of the window lies in.
   std::uint32_t block_of(std::size_t slot) const {
-    return place(slot) & ((std::uint32_t{1} << kNumberBits) - 1);
+    return number_[0][slot & mask_[0]] + number_[1][slot >> shift_[1] & mask_[1]] +
+           number_[2][slot >> shift_[2]];
   }
 
-  /// The slots of a block together with one voxel around it, by axis: entry e of an axis stands for
-  /// index 8 b - 1 + e. The slot of a voxel is the sum over the axes; kOutside outside the window.
-  using AxisSlots = std::array<std::size_t, kSide + 2>;
-  std::array<AxisSlots, 3> slots_around(std::uint32_t block) const;
+  /// The slots of a block, by axis: entry e of an axis stands for index 8 b + e. The slot of a
+  /// voxel is the sum over the axes; kOutside outside the window.
+  using AxisSlots = std::array<std::size_t, kSide>;
+  std::array<AxisSlots, 3> slots(std::uint32_t block) const;
 
   std::size_t memory_bytes() const;
 
@@ -51,7 +45,7 @@ class MapBlocks {
   std::array<int, 3> shift_;
   VoxelIndex first_;  ///< absolute coordinate of block 0
   std::array<std::uint32_t, 3> counts_;
-  std::array<std::vector<std::uint32_t>, 3> place_;  ///< per axis, by the slot's part of that axis
+  std::array<std::vector<std::uint32_t>, 3> number_;  ///< per axis, by the slot's part of that axis
 };
 
 }  // namespace nextview

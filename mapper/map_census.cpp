@@ -1,112 +1,59 @@
 #include "mapper/map_census.h"
 
 #include <algorithm>
+#include <bit>
 #include <cstring>
-#include <iterator>
 
 namespace nextview {
 
 namespace {
 
 constexpr std::size_t kSide = MapBlocks::kSide;
-constexpr std::uint8_t kListed = 1 << 6;  // above the six bits for sides
-constexpr std::uint32_t kNumberMask = (std::uint32_t{1} << MapBlocks::kNumberBits) - 1;
-
-constexpr std::size_t kRow = 16;  // a vector register of bytes
-
-// The labels of a block and of one voxel around it, as bytes: row (y, z) holds the voxels
-// x = -1 ... 8 at [0] ... [9].
-class Neighbourhood {
- public:
-  Neighbourhood(std::span<const Label> labels, const std::array<MapBlocks::AxisSlots, 3>& slots) {
-    const auto& [xs, ys, zs] = slots;
-    const bool whole_row = xs[kSide] - xs[1] == kSide - 1 && xs[1] != MapBlocks::kOutside;
-    for (std::size_t z = 0; z < kSide + 2; ++z) {
-      for (std::size_t y = 0; y < kSide + 2; ++y) {
-        std::uint8_t* to = bytes_ + kMargin + (z * (kSide + 2) + y) * kRow;
-        if (ys[y] == MapBlocks::kOutside || zs[z] == MapBlocks::kOutside) continue;
-        const Label* from = labels.data() + ys[y] + zs[z];
-        if (whole_row) {
-          std::memcpy(to + 1, from + xs[1], kSide);
-        } else {
-          for (std::size_t x = 1; x <= kSide; ++x) put(from, xs[x], to + x);
-        }
-        put(from, xs[0], to);
-        put(from, xs[kSide + 1], to + kSide + 1);
-      }
-    }
-  }
-
-  // Row (y, z) of the block itself; y, z in 0 ... 7. Index 1 is its first voxel.
-  const std::uint8_t* row(std::size_t y, std::size_t z) const {
-    return bytes_ + kMargin + ((z + 1) * (kSide + 2) + y + 1) * kRow;
-  }
-  static constexpr std::ptrdiff_t kNextY = kRow;
-  static constexpr std::ptrdiff_t kNextZ = kRow * (kSide + 2);
-
- private:
-  static void put(const Label* from, std::size_t x, std::uint8_t* to) {
-    if (x != MapBlocks::kOutside) *to = static_cast<std::uint8_t>(from[x]);
-  }
-
-  // Rows are read one voxel before and after their length.
-  static constexpr std::size_t kMargin = kRow;
-  std::uint8_t bytes_[(kSide + 2) * (kSide + 2) * kRow + 2 * kMargin] = {};
-};
+using Slots = std::array<MapBlocks::AxisSlots, 3>;
 
 constexpr std::uint8_t byte(Label label) { return static_cast<std::uint8_t>(label); }
 
-// The kinds of things counted: voxels by label, then the faces of two labels that touch Empty.
-constexpr std::size_t kOccupiedFaces = kLabelCount;
-constexpr std::size_t kOcclusionPlaneFaces = kLabelCount + 1;
-constexpr std::size_t kKinds = kLabelCount + 2;
+// The rows of a block are read and written as words.
+static_assert(std::endian::native == std::endian::little);
 
-// A row of labels or counts as the vector registers of all x86-64 and ARM machines hold it (GCC's
-// and clang's vector extension). A comparison gives 255 or 0 in every lane.
-using Lanes [[gnu::vector_size(kRow)]] = std::uint8_t;
-
-Lanes load(const std::uint8_t* row) {
-  Lanes lanes;
-  std::memcpy(&lanes, row, kRow);
-  return lanes;
+bool is_whole(const MapBlocks::AxisSlots& xs) {
+  return xs[0] != MapBlocks::kOutside && xs[kSide - 1] - xs[0] == kSide - 1;
 }
 
-Lanes equals(Lanes lanes, Label label) { return reinterpret_cast<Lanes>(lanes == byte(label)); }
+// A row of labels whose first voxel would lie at from[0], voxels outside the window left out.
+std::uint64_t read_row(const Label* from, const MapBlocks::AxisSlots& xs) {
+  std::uint64_t row = 0;
+  if (is_whole(xs)) {
+    std::memcpy(&row, from + xs[0], kSide);
+    return row;
+  }
+  for (std::size_t x = 0; x < kSide; ++x) {
+    if (xs[x] != MapBlocks::kOutside) row |= std::uint64_t{byte(from[xs[x]])} << (8 * x);
+  }
+  return row;
+}
 
-// Derives the occlusion planes of a block and counts it. The labels as they become are written to
-// now, rows as in the neighbourhood; counts are by kind, Unmarked ones left out.
-//
-// Lane x of a row is voxel x - 1; lanes 0 and 9 ... 15 are computed for nothing. A lane counts at
-// most 6 faces in each of 8 rows before its byte is emptied into a wider number.
-void look_at_block(const Neighbourhood& neighbourhood, std::uint8_t (&now)[kSide * kSide][kRow],
-                   std::uint16_t (&counts)[kKinds]) {
-  std::fill(std::begin(counts), std::end(counts), std::uint16_t{0});
+void write_row(std::uint64_t row, const MapBlocks::AxisSlots& xs, Label* to) {
+  if (is_whole(xs)) {
+    std::memcpy(to + xs[0], &row, kSide);
+    return;
+  }
+  for (std::size_t x = 0; x < kSide; ++x) {
+    if (xs[x] != MapBlocks::kOutside) to[xs[x]] = static_cast<Label>(row >> (8 * x) & 0xff);
+  }
+}
+
+// Reads the labels of a block, and settles those that are freshly Occluded.
+void take_rows(std::span<Label> labels, const Slots& slots, BlockRows& rows) {
+  const auto& [xs, ys, zs] = slots;
   for (std::size_t z = 0; z < kSide; ++z) {
-    Lanes tally[kKinds] = {};
     for (std::size_t y = 0; y < kSide; ++y) {
-      const std::uint8_t* const here = neighbourhood.row(y, z);
-      Lanes faces = {};  // that touch an Empty voxel
-      for (const std::ptrdiff_t next :
-           {std::ptrdiff_t{1}, Neighbourhood::kNextY, Neighbourhood::kNextZ}) {
-        faces -= equals(load(here - next), Label::Empty) + equals(load(here + next), Label::Empty);
-      }
-      const Lanes was = load(here);
-      const Lanes hidden = equals(was, Label::Occluded) | equals(was, Label::OcclusionPlane) |
-                           equals(was, kFreshlyOccluded);
-      const Lanes open = reinterpret_cast<Lanes>(faces != 0);
-      const Lanes derived = (open & byte(Label::OcclusionPlane)) | (~open & byte(Label::Occluded));
-      const Lanes is = (hidden & derived) | (~hidden & was);
-      std::memcpy(now[z * kSide + y], &is, kRow);
-      for (std::uint8_t label = 1; label < kLabelCount; ++label) {
-        tally[label] -= equals(is, static_cast<Label>(label));
-      }
-      tally[kOccupiedFaces] += faces & equals(is, Label::Occupied);
-      tally[kOcclusionPlaneFaces] += faces & hidden;
-    }
-    for (std::size_t kind = 1; kind < kKinds; ++kind) {
-      for (std::size_t x = 1; x <= kSide; ++x) {
-        counts[kind] = static_cast<std::uint16_t>(counts[kind] + tally[kind][x]);
-      }
+      std::uint64_t& row = rows[kSide * y + z];
+      row = 0;
+      if (ys[y] == MapBlocks::kOutside || zs[z] == MapBlocks::kOutside) continue;
+      Label* const at = labels.data() + ys[y] + zs[z];
+      row = read_row(at, xs);
+      if (settled(row) != row) write_row(settled(row), xs, at);
     }
   }
 }
@@ -114,80 +61,104 @@ void look_at_block(const Neighbourhood& neighbourhood, std::uint8_t (&now)[kSide
 }  // namespace
 
 MapCensus::MapCensus(const VoxelMap& map, const MapBlocks& blocks)
-    : counts_(blocks.size()), touched_(blocks.size(), 0) {
+    : counts_(blocks.size()), empty_(std::size_t{blocks.size()} + 1), listed_(blocks.size(), 0) {
   const VoxelIndex size = map.window().size;
   voxels_[byte(Label::Unmarked)] = std::int64_t{size[0]} * size[1] * size[2];
 }
 
 void MapCensus::note_changes(const MapBlocks& blocks, std::span<const std::uint32_t> slots) {
   for (const std::uint32_t slot : slots) {
-    const std::uint32_t place = blocks.place(slot);
-    const std::uint32_t block = place & kNumberMask;
-    if (!touched_[block]) to_look_.push_back(block);
-    touched_[block] |= static_cast<std::uint8_t>(kListed | place >> MapBlocks::kNumberBits);
+    const std::uint32_t block = blocks.block_of(slot);
+    if (listed_[block]) continue;
+    listed_[block] = 1;
+    to_look_.push_back(block);
   }
 }
 
-void MapCensus::look_at_neighbours(const MapBlocks& blocks) {
-  const std::size_t changed = to_look_.size();
-  for (std::size_t n = 0; n < changed; ++n) {
-    const std::uint32_t block = to_look_[n];
-    for (int side = 0; side < 6; ++side) {
-      if (!(touched_[block] >> side & 1)) continue;
-      VoxelIndex coordinate = blocks.coordinate(block);
-      coordinate[side / 2] += side % 2 == 0 ? -1 : 1;
-      const std::uint32_t neighbour = blocks.number(coordinate);
-      if (neighbour == blocks.size() || touched_[neighbour]) continue;
-      touched_[neighbour] = kListed;
-      to_look_.push_back(neighbour);
-    }
+void MapCensus::list_neighbours(const MapBlocks& blocks, std::uint32_t block, unsigned sides) {
+  if (sides == 0) return;
+  const auto neighbours = blocks.neighbours(block);
+  for (std::size_t side = 0; side < 6; ++side) {
+    const std::uint32_t neighbour = neighbours[side];
+    if (!(sides >> side & 1) || neighbour == blocks.size() || listed_[neighbour]) continue;
+    listed_[neighbour] = 1;
+    to_look_.push_back(neighbour);
   }
+}
+
+void MapCensus::take_labels(VoxelMap& map, const MapBlocks& blocks, std::uint32_t block) {
+  BlockRows rows;
+  take_rows(map.labels(), blocks.slots(block), rows);
+  LookedAt& at = labels_.emplace_back();
+  at.block = block;
+  sort_by_label(rows, at.labels);
 }
 
 std::span<const std::uint32_t> MapCensus::update(VoxelMap& map, const MapBlocks& blocks,
                                                  std::vector<std::uint32_t>& changed_slots) {
-  look_at_neighbours(blocks);
   // Blocks next to each other along x share cache lines.
   std::sort(to_look_.begin(), to_look_.end());
-  for (const std::uint32_t block : to_look_) {
-    add(counts_[block], -1);
-    counts_[block] = recount(map, blocks, block, changed_slots);
-    add(counts_[block], 1);
-    touched_[block] = 0;
+  labels_.clear();
+  for (std::size_t n = 0; n < to_look_.size(); ++n) {  // which grows
+    const std::uint32_t block = to_look_[n];
+    take_labels(map, blocks, block);
+    const BlockBits& empty = labels_.back().labels.empty;
+    BlockBits differs;
+    for (std::size_t z = 0; z < kSide; ++z) differs[z] = empty[z] ^ empty_[block][z];
+    empty_[block] = empty;
+    list_neighbours(blocks, block, sides_touched(differs));
+  }
+  for (const LookedAt& at : labels_) {
+    add(counts_[at.block], -1);
+    counts_[at.block] = derive(map, blocks, at, changed_slots);
+    add(counts_[at.block], 1);
+    listed_[at.block] = 0;
   }
   looked_.swap(to_look_);
   to_look_.clear();
   return looked_;
 }
 
-MapCensus::Counts MapCensus::recount(VoxelMap& map, const MapBlocks& blocks, std::uint32_t block,
-                                     std::vector<std::uint32_t>& changed_slots) {
-  const auto slots = blocks.slots_around(block);
-  const std::span<Label> labels = map.labels();
-  const Neighbourhood neighbourhood(labels, slots);
-  std::uint8_t now[kSide * kSide][kRow];
-  std::uint16_t counted[kKinds];
-  look_at_block(neighbourhood, now, counted);
+MapCensus::Counts MapCensus::derive(VoxelMap& map, const MapBlocks& blocks, const LookedAt& at,
+                                    std::vector<std::uint32_t>& changed_slots) const {
+  const BlockLabels& labels = at.labels;
+  std::array<const BlockBits*, 6> beyond;  // the last of empty_ stands for what is not there
+  const auto neighbours = blocks.neighbours(at.block);
+  for (std::size_t side = 0; side < 6; ++side) beyond[side] = &empty_[neighbours[side]];
+  EmptyNeighbours open;
+  find_empty_neighbours(labels, beyond, open);
 
-  for (std::size_t row = 0; row < kSide * kSide; ++row) {
-    const std::size_t y = row % kSide;
-    const std::size_t z = row / kSide;
-    const std::uint8_t* const was = neighbourhood.row(y, z);
-    if (std::memcmp(now[row] + 1, was + 1, kSide) == 0) continue;
-    for (std::size_t x = 1; x <= kSide; ++x) {
-      if (now[row][x] == was[x]) continue;
-      const std::size_t slot = slots[0][x] + slots[1][y + 1] + slots[2][z + 1];
-      labels[slot] = static_cast<Label>(now[row][x]);
-      if (was[x] != byte(kFreshlyOccluded)) {
-        changed_slots.push_back(static_cast<std::uint32_t>(slot));
+  BlockBits planes;
+  BlockBits changed;
+  for (std::size_t z = 0; z < kSide; ++z) {
+    planes[z] = labels.hidden[z] & open.any[z];
+    changed[z] = planes[z] ^ labels.occlusion_plane[z];
+  }
+  if (changed != BlockBits{}) {
+    const auto [xs, ys, zs] = blocks.slots(at.block);
+    for (std::size_t z = 0; z < kSide; ++z) {
+      for (std::uint64_t left = changed[z]; left != 0; left &= left - 1) {
+        const auto bit = static_cast<std::size_t>(std::countr_zero(left));
+        const std::size_t slot = xs[bit / kSide] + ys[bit % kSide] + zs[z];
+        map.labels()[slot] = planes[z] >> bit & 1 ? Label::OcclusionPlane : Label::Occluded;
+        // A fresh one has been noted already.
+        if (!(labels.fresh[z] >> bit & 1)) {
+          changed_slots.push_back(static_cast<std::uint32_t>(slot));
+        }
       }
     }
   }
 
   Counts counts;
-  for (std::size_t label = 1; label < kLabelCount; ++label) counts.voxels[label] = counted[label];
-  counts.occupied_faces = counted[kOccupiedFaces];
-  counts.occlusion_plane_faces = counted[kOcclusionPlaneFaces];
+  const auto set = [&](Label label, int voxels) {
+    counts.voxels[byte(label)] = static_cast<std::uint16_t>(voxels);
+  };
+  set(Label::OcclusionPlane, count(planes));
+  set(Label::Occluded, count(labels.hidden) - counts.voxels[byte(Label::OcclusionPlane)]);
+  set(Label::Empty, count(labels.empty));
+  set(Label::Occupied, count(labels.occupied));
+  counts.occupied_faces = static_cast<std::uint16_t>(open.occupied_faces);
+  counts.occlusion_plane_faces = static_cast<std::uint16_t>(open.hidden_faces);
   return counts;
 }
 
@@ -201,8 +172,9 @@ void MapCensus::add(const Counts& counts, int sign) {
 }
 
 std::size_t MapCensus::memory_bytes() const {
-  return counts_.capacity() * sizeof(Counts) + touched_.capacity() +
-         (to_look_.capacity() + looked_.capacity()) * sizeof(std::uint32_t);
+  return counts_.capacity() * sizeof(Counts) + empty_.capacity() * sizeof(BlockBits) +
+         listed_.capacity() + (to_look_.capacity() + looked_.capacity()) * sizeof(std::uint32_t) +
+         labels_.capacity() * sizeof(LookedAt);
 }
 
 }  // namespace nextview

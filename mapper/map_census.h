@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "mapper/block_bits.h"
 #include "mapper/map_blocks.h"
 #include "mapper/voxel_map.h"
 
@@ -17,8 +18,9 @@ constexpr Label kFreshlyOccluded = static_cast<Label>(kLabelCount);
 /// The voxels of a map counted block by block, and its occlusion planes (P8, P13).
 ///
 /// A label, and whether an Occluded voxel is an OcclusionPlane, depends on the voxel and its six
-/// neighbours only. So after a range image the blocks it changed, and those next to a changed voxel
-/// at their side, are looked at again as a whole, and the totals take the difference.
+/// neighbours only. So after a range image the blocks it changed, and those at a side of which a
+/// voxel became Empty or ceased to be, are looked at again as a whole, and the totals take the
+/// difference. Blocks are looked at in bits: 64 voxels at a time.
 class MapCensus {
  public:
   /// Of a map that is all Unmarked.
@@ -49,15 +51,23 @@ class MapCensus {
     std::uint16_t occlusion_plane_faces = 0;
   };
 
-  void look_at_neighbours(const MapBlocks& blocks);
-  static Counts recount(VoxelMap& map, const MapBlocks& blocks, std::uint32_t block,
-                        std::vector<std::uint32_t>& changed_slots);
+  struct LookedAt {
+    std::uint32_t block;
+    BlockLabels labels;
+  };
+
+  void take_labels(VoxelMap& map, const MapBlocks& blocks, std::uint32_t block);
+  void list_neighbours(const MapBlocks& blocks, std::uint32_t block, unsigned sides);
+  Counts derive(VoxelMap& map, const MapBlocks& blocks, const LookedAt& at,
+                std::vector<std::uint32_t>& changed_slots) const;
   void add(const Counts& counts, int sign);
 
-  std::vector<Counts> counts_;          ///< by block
-  std::vector<std::uint8_t> touched_;   ///< by block: sides touched (MapBlocks::place), kListed
-  std::vector<std::uint32_t> to_look_;  ///< the blocks with kListed
+  std::vector<Counts> counts_;        ///< by block
+  std::vector<BlockBits> empty_;      ///< by block
+  std::vector<std::uint8_t> listed_;  ///< by block: whether in to_look_
+  std::vector<std::uint32_t> to_look_;
   std::vector<std::uint32_t> looked_;
+  std::vector<LookedAt> labels_;  ///< of the blocks in to_look_
   std::array<std::int64_t, kLabelCount> voxels_ = {};
   std::int64_t occupied_faces_ = 0;
   std::int64_t occlusion_plane_faces_ = 0;

@@ -47,14 +47,14 @@ using BlockLabels = std::array<std::uint8_t, MapBlocks::kVoxels>;
 BlockLabels labels_of(const VoxelMap& map, const MapBlocks& blocks, std::uint32_t block) {
   constexpr std::size_t kSide = MapBlocks::kSide;
   BlockLabels bytes = {};
-  const auto [xs, ys, zs] = blocks.slots_around(block);
+  const auto [xs, ys, zs] = blocks.slots(block);
   for (std::size_t row = 0; row < kSide * kSide; ++row) {
-    const std::size_t y = ys[1 + row % kSide];
-    const std::size_t z = zs[1 + row / kSide];
+    const std::size_t y = ys[row % kSide];
+    const std::size_t z = zs[row / kSide];
     if (y == MapBlocks::kOutside || z == MapBlocks::kOutside) continue;
     const Label* const from = map.labels().data() + y + z;
     for (std::size_t x = 0; x < kSide; ++x) {
-      const std::size_t slot = xs[1 + x];
+      const std::size_t slot = xs[x];
       if (slot != MapBlocks::kOutside) {
         bytes[row * kSide + x] = static_cast<std::uint8_t>(from[slot]);
       }

@@ -1,6 +1,7 @@
 #include "mapper/normals.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -140,16 +141,16 @@ AngleStep angle_step(const std::vector<double>& sines, const std::vector<double>
   return {static_cast<float>(cosine), static_cast<float>(sine), static_cast<float>(1.0 / sine)};
 }
 
-void NormalEstimator::PaddedRows::resize(int new_columns, int new_rows, int new_pad_columns,
-                                         int new_pad_rows) {
-  columns = new_columns;
+void NormalEstimator::PaddedRows::resize(int columns, int new_rows, int new_pad_columns,
+                                         int new_kept) {
   rows = new_rows;
   pad_columns = new_pad_columns;
-  pad_rows = new_pad_rows;
+  kept = new_kept;
+  mask = static_cast<int>(std::bit_ceil(static_cast<unsigned>(std::min(kept, rows)))) - 1;
   pitch = columns + 2 * pad_columns;
-  const auto size = static_cast<std::size_t>(pitch * (rows + 2 * pad_rows));
   // The padding is written once and never again while the shape stays.
-  values.assign(size, std::numeric_limits<float>::quiet_NaN());
+  values.assign(static_cast<std::size_t>((mask + 2) * pitch),
+                std::numeric_limits<float>::quiet_NaN());
 }
 
 NormalEstimator::Axis NormalEstimator::make_axis(const std::vector<double>& sines,
@@ -171,7 +172,9 @@ NormalEstimator::Axis NormalEstimator::make_axis(const std::vector<double>& sine
 
 void NormalEstimator::prepare(const RangeImage& image) {
   const RayTable& rays = image.rays;
-  columns_ = rays.columns();
+  image_range_m_ = image.range_m.data();
+  next_slope_ = 0;
+  next_bend_ = 0;
   column_axis_ = make_axis(rays.column_sin, rays.column_cos);
   row_axis_ = make_axis(rays.row_sin, rays.row_cos);
   column_sin_ = to_float(rays.column_sin);
@@ -183,26 +186,26 @@ void NormalEstimator::prepare(const RangeImage& image) {
       rotation_[i][j] = static_cast<float>(image.world_from_sensor(i, j));
     }
   }
-  const bool same_shape = range_.columns == columns_ && range_.rows == rays.rows() &&
-                          range_.pad_columns == column_axis_.stride &&
-                          range_.pad_rows == row_axis_.stride;
-  if (!same_shape) {
-    for (PaddedRows* rows : {&range_, &inverse_range_, &slope_, &column_bend_}) {
-      rows->resize(columns_, rays.rows(), column_axis_.stride, row_axis_.stride);
-    }
-    row_bend_.assign(static_cast<std::size_t>(range_.pitch),
-                     std::numeric_limits<float>::quiet_NaN());
-  }
-  take_ranges(image);
-  for (int v = 0; v < rays.rows(); ++v) slope_along_row(v);
-  for (int v = 0; v < rays.rows(); ++v) bend_along_column(v);
+  resize(rays.columns(), rays.rows());
 }
 
-void NormalEstimator::take_ranges(const RangeImage& image) {
-  const float* from = image.range_m.data();
-  for (int v = 0; v < image.rays.rows(); ++v, from += columns_) {
-    invert_ranges(columns_, from, range_.row(v), inverse_range_.row(v));
+void NormalEstimator::resize(int columns, int rows) {
+  // From the row above that a normal looks at to the row below that the one below looks at.
+  const int kept = 3 * row_axis_.stride + 1;
+  const bool same_shape = columns_ == columns && rows_ == rows && range_.kept == kept &&
+                          range_.pad_columns == column_axis_.stride;
+  if (same_shape) return;
+  columns_ = columns;
+  rows_ = rows;
+  for (PaddedRows* part : {&range_, &inverse_range_, &slope_, &column_bend_}) {
+    part->resize(columns, rows, column_axis_.stride, kept);
   }
+  row_bend_.assign(static_cast<std::size_t>(range_.pitch), std::numeric_limits<float>::quiet_NaN());
+}
+
+void NormalEstimator::take_ranges(int v) {
+  const float* const from = image_range_m_ + static_cast<std::ptrdiff_t>(v) * columns_;
+  invert_ranges(columns_, from, range_.row(v), inverse_range_.row(v));
 }
 
 void NormalEstimator::slope_along_row(int v) {
@@ -226,11 +229,17 @@ void NormalEstimator::bend_along_column(int v) {
                      column_bend_.row(v));
 }
 
-void NormalEstimator::row(int v, NormalRow& normals) const {
+void NormalEstimator::row(int v, NormalRow& normals) {
   for (auto* part : {&normals.x, &normals.y, &normals.z, &normals.quality}) {
-    part->resize(static_cast<std::size_t>(columns_));
+    part->resize(static_cast<std::size_t>(columns_ + NormalRow::kPadding));
   }
   const int s = row_axis_.stride;
+  for (; next_slope_ < std::min(rows_, v + 2 * s + 1); ++next_slope_) {
+    take_ranges(next_slope_);
+    slope_along_row(next_slope_);
+  }
+  for (; next_bend_ < std::min(rows_, v + s + 1); ++next_bend_) bend_along_column(next_bend_);
+
   const auto down = [&](const PaddedRows& rows) {
     return RowView{rows.row(v), rows.row(v - s), rows.row(v + s)};
   };

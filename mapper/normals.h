@@ -10,6 +10,8 @@ namespace nextview {
 
 /// Surface normals of one row of a range image, as the map sums them (SurfaceVoxel).
 struct NormalRow {
+  /// The arrays go on for this many pixels beyond the row, for those who read whole vectors.
+  static constexpr int kPadding = 16;
   /// World frame, towards the sensor, in 1/SurfaceVoxel::kNormalUnit; (0, 0, 0) where there is
   /// none.
   std::vector<std::int32_t> x, y, z;
@@ -44,11 +46,13 @@ struct NormalRow {
 /// bits from any compiler. Ranges outside [1 mm, 1000 km] have no normal.
 class NormalEstimator {
  public:
-  /// Takes in an image with as many ranges as its table has pixels, at least 2 x 2.
+  /// Begins an image with as many ranges as its table has pixels, at least 2 x 2. Its ranges are
+  /// read row by row: it must live until its last row has been asked for.
   void prepare(const RangeImage& image);
 
-  /// The normals of row v of the image prepared last.
-  void row(int v, NormalRow& normals) const;
+  /// The normals of row v of the image prepared last. Rows are asked for in order, from 0 on: what
+  /// their neighbourhoods share is worked out on the way and kept no longer than it is needed.
+  void row(int v, NormalRow& normals);
 
   std::size_t memory_bytes() const;
 
@@ -66,24 +70,36 @@ class NormalEstimator {
     int stride = 1;
     Step previous, next;
   };
-  /// Rows of floats with NaN around, so that neighbours outside the image read NaN.
+  /// The rows of an image at work, with NaN around, so that neighbours outside the image read NaN.
+  /// A row takes the place of one that lies at least `kept` above it.
   struct PaddedRows {
-    void resize(int columns, int rows, int pad_columns, int pad_rows);
-    const float* row(int v) const { return values.data() + (v + pad_rows) * pitch + pad_columns; }
-    float* row(int v) { return values.data() + (v + pad_rows) * pitch + pad_columns; }
+    void resize(int columns, int rows, int pad_columns, int kept);
+    const float* row(int v) const { return values.data() + place(v); }
+    float* row(int v) { return values.data() + place(v); }
+    std::ptrdiff_t place(int v) const {
+      // The row after the last kept one stands for all rows above and below the image.
+      const bool inside = static_cast<unsigned>(v) < static_cast<unsigned>(rows);
+      return (inside ? v & mask : mask + 1) * pitch + pad_columns;
+    }
     std::vector<float> values;
-    int columns = 0, rows = 0, pad_columns = 0, pad_rows = 0;
+    int rows = 0, pad_columns = 0, kept = 0;
+    int mask = 0;  ///< a power of two of rows are kept; this is one less
     std::ptrdiff_t pitch = 0;
   };
 
   static Axis make_axis(const std::vector<double>& sines, const std::vector<double>& cosines);
-  void take_ranges(const RangeImage& image);
+  void resize(int columns, int rows);
+  void take_ranges(int v);
   void slope_along_row(int v);
   void bend_along_column(int v);
 
+  const float* image_range_m_ = nullptr;
   int columns_ = 0;
-  Axis column_axis_;  ///< from column to column
-  Axis row_axis_;     ///< from row to row
+  int rows_ = 0;
+  int next_slope_ = 0;  ///< the first row without slope
+  int next_bend_ = 0;   ///< the first row without column bend
+  Axis column_axis_;    ///< from column to column
+  Axis row_axis_;       ///< from row to row
   std::vector<float> column_sin_, column_cos_, row_sin_, row_cos_;
   float rotation_[3][3] = {};
   PaddedRows range_;             ///< metres; NaN where there is no point

@@ -14,63 +14,112 @@ namespace {
 // Why a ray ends where it does.
 enum PixelKind : std::int32_t { kPoint = 0, kNoReturn = 1, kInvalid = 2 };
 
-// A row of pixels is worked on in runs that share an end; sums over this many points fit 32 bits.
-constexpr int kLongestRun = 1 << 16;
-
-NEXTVIEW_VECTOR_CLONES
-void follow_ranges(int columns, const float* __restrict range_m, double farthest_m, double clear_m,
-                   double* __restrict length_m, std::int32_t* __restrict kind) {
-#pragma omp simd
-  for (int u = 0; u < columns; ++u) {
-    const float d = range_m[u];
-    const bool is_finite = d <= std::numeric_limits<float>::max();
-    kind[u] = static_cast<std::int32_t>(!is_finite) + static_cast<std::int32_t>(d != d);
-    const double point_m =
-        static_cast<double>(d) < farthest_m ? static_cast<double>(d) : farthest_m;
-    const double followed_m = is_finite ? point_m : clear_m;
-    length_m[u] = d == d ? followed_m : 0.0;
-  }
-}
-
 // What eq. 1 and 2 need to know of one axis of the world.
 struct AxisOfPoints {
   double rotation[3];  // the axis' row of world_from_sensor
   double position_m;
   double origin_m;
-  double voxel_size_m;
 };
 
+// The rays of a row, and how far they are followed.
+struct RowOfRays {
+  const double* __restrict column_sin;
+  const double* __restrict column_cos;
+  double row_sin, row_cos;
+  const float* __restrict range_m;
+  double farthest_m;  // where a return is farther away
+  double clear_m;     // where there is no return
+};
+
+// Where the rays of a row end; see RayEnds::Row.
+struct EndsOfRow {
+  std::int32_t* __restrict x;
+  std::int32_t* __restrict y;
+  std::int32_t* __restrict z;
+  std::int32_t* __restrict kind;
+};
+
+inline std::int32_t kind_of(float range_m) {
+  const bool is_finite = range_m <= std::numeric_limits<float>::max();
+  return static_cast<std::int32_t>(!is_finite) + static_cast<std::int32_t>(range_m != range_m);
+}
+
+inline double followed_m(const RowOfRays& rays, float range_m) {
+  const double d = static_cast<double>(range_m);
+  const double point_m = d < rays.farthest_m ? d : rays.farthest_m;
+  const double length_m = range_m <= std::numeric_limits<float>::max() ? point_m : rays.clear_m;
+  return range_m == range_m ? length_m : 0.0;
+}
+
+// A point's coordinate along an axis (eq. 1), relative to the grid's origin and moved away from it
+// by half a voxel: divided by a voxel's size and truncated it is the index (eq. 2).
+inline double moved_coordinate_m(const RowOfRays& rays, const AxisOfPoints& axis, double half_m,
+                                 int u, double length_m) {
+  const double n_x = -rays.column_sin[u];
+  const double n_y = rays.column_cos[u] * rays.row_cos;
+  const double n_z = rays.column_cos[u] * rays.row_sin;
+  const double direction = axis.rotation[0] * n_x + axis.rotation[1] * n_y + axis.rotation[2] * n_z;
+  const double x = axis.position_m + length_m * direction - axis.origin_m;
+  return x + std::copysign(half_m, x);
+}
+
+// Eq. 2 by the letter.
 NEXTVIEW_VECTOR_CLONES
-void end_voxels(int columns, AxisOfPoints axis, const double* __restrict length_m,
-                const double* __restrict column_sin, const double* __restrict column_cos,
-                double row_sin, double row_cos, std::int32_t* __restrict end) {
-  const double half_m = 0.5 * axis.voxel_size_m;
+void end_voxels(int columns, const RowOfRays& rays, const AxisOfPoints (&axes)[3],
+                double voxel_size_m, EndsOfRow ends) {
+  const RowOfRays row = rays;
+  const AxisOfPoints axis_x = axes[0], axis_y = axes[1], axis_z = axes[2];
+  const double half_m = 0.5 * voxel_size_m;
 #pragma omp simd
   for (int u = 0; u < columns; ++u) {
-    const double n_x = -column_sin[u];
-    const double n_y = column_cos[u] * row_cos;
-    const double n_z = column_cos[u] * row_sin;
-    const double direction =
-        axis.rotation[0] * n_x + axis.rotation[1] * n_y + axis.rotation[2] * n_z;
-    const double point = axis.position_m + length_m[u] * direction;  // eq. 1
-    const double x = point - axis.origin_m;
-    end[u] =
-        static_cast<std::int32_t>((x + std::copysign(half_m, x)) / axis.voxel_size_m);  // eq. 2
+    const double length_m = followed_m(row, row.range_m[u]);
+    const auto index = [&](const AxisOfPoints& axis) {
+      return static_cast<std::int32_t>(moved_coordinate_m(row, axis, half_m, u, length_m) /
+                                       voxel_size_m);
+    };
+    ends.x[u] = index(axis_x);
+    ends.y[u] = index(axis_y);
+    ends.z[u] = index(axis_z);
+    ends.kind[u] = kind_of(row.range_m[u]);
   }
 }
 
+// The same with a product for the quotient, which takes a fraction of the time. The product may be
+// wrong in its last bits: false where that could matter, and then the row has to be done by the
+// letter. With u = 2^-53, the quotient as rounded is within 3 u of the product as rounded (one each
+// for the reciprocal and both roundings), and the bounds are 7 u away or more.
 NEXTVIEW_VECTOR_CLONES
-void compare_neighbours(int columns, const std::int32_t* x, const std::int32_t* y,
-                        const std::int32_t* z, const std::int32_t* kind,
-                        std::int32_t* __restrict same_as_last) {
-  same_as_last[0] = 0;
-#pragma omp simd
-  for (int u = 1; u < columns; ++u) {
-    const std::int32_t difference =
-        (x[u] ^ x[u - 1]) | (y[u] ^ y[u - 1]) | (z[u] ^ z[u - 1]) | (kind[u] ^ kind[u - 1]);
-    same_as_last[u] = difference == 0;
+bool end_voxels_by_reciprocal(int columns, const RowOfRays& rays, const AxisOfPoints (&axes)[3],
+                              double voxel_size_m, EndsOfRow ends) {
+  constexpr double kAbove = 1.0 + 0x1p-50;
+  constexpr double kBelow = 1.0 - 0x1p-50;
+  const RowOfRays row = rays;
+  const AxisOfPoints axis_x = axes[0], axis_y = axes[1], axis_z = axes[2];
+  const double half_m = 0.5 * voxel_size_m;
+  const double per_m = 1.0 / voxel_size_m;
+  std::int32_t doubt = 0;
+#pragma omp simd reduction(| : doubt)
+  for (int u = 0; u < columns; ++u) {
+    const double length_m = followed_m(row, row.range_m[u]);
+    const auto index = [&](const AxisOfPoints& axis, std::int32_t& bound) {
+      const double product = moved_coordinate_m(row, axis, half_m, u, length_m) * per_m;
+      bound = static_cast<std::int32_t>(product * kAbove);
+      return static_cast<std::int32_t>(product * kBelow);
+    };
+    std::int32_t x, y, z;
+    ends.x[u] = index(axis_x, x);
+    ends.y[u] = index(axis_y, y);
+    ends.z[u] = index(axis_z, z);
+    ends.kind[u] = kind_of(row.range_m[u]);
+    doubt |= (ends.x[u] ^ x) | (ends.y[u] ^ y) | (ends.z[u] ^ z);
   }
+  return doubt == 0;
 }
+
+// Beyond these a reciprocal loses bits.
+bool has_reciprocal(double voxel_size_m) { return voxel_size_m > 1e-300 && voxel_size_m < 1e300; }
+
+constexpr std::uint32_t kNoEnd = ~std::uint32_t{0};
 
 // An end as a key: its voxel relative to the sensor's, 16 bits an axis, and whether it is a
 // surface. Ends lie within kFarthestVoxels of the sensor, so 16 bits hold them.
@@ -90,73 +139,87 @@ std::size_t first_place(std::uint64_t key, std::size_t places) {
   return static_cast<std::size_t>(key * 0x9e3779b97f4a7c15u >> (64 - std::countr_zero(places)));
 }
 
+void add_points(const PixelRun& run, SurfaceVoxel& seen) {
+  for (std::size_t axis = 0; axis < 3; ++axis) seen.normal_sum[axis] += run.normal_sum[axis];
+  seen.normal_count += static_cast<std::uint32_t>(run.normal_sum[3]);
+  seen.quality = std::max(seen.quality, static_cast<std::uint16_t>(run.quality));
+}
+
 }  // namespace
 
 void RayEnds::collect(const RangeImage& image, const VoxelGrid& grid, const MapWindow& window) {
   sensor_ = grid.voxel_of(image.position_m);
   counts_ = {};
+  if (table_.empty()) {
+    make_table(image.range_m.size() / 8);  // seldom outgrown
+    ends_.reserve(table_.size() / 2);
+  }
   ends_.clear();
   for (const std::uint32_t place : used_) table_[place].key = kNoKey;
   used_.clear();
 
   normals_.prepare(image);
   const int columns = image.rays.columns();
+  for (auto* numbers : {&end_above_, &end_here_}) {
+    numbers->assign(static_cast<std::size_t>(columns + NormalRow::kPadding), kNoEnd);
+  }
   for (int v = 0; v < image.rays.rows(); ++v) {
     find_ends(image, grid, v);
     normals_.row(v, normal_row_);
-    for (int u = 0; u < columns;) {
-      const int begin = u;
-      do {
-        ++u;
-      } while (u < columns && u - begin < kLongestRun &&
-               row_.same_as_last[static_cast<std::size_t>(u)]);
-      add_run(begin, u, window);
-    }
+    const auto column = [](const std::vector<std::int32_t>& row) { return row.data() + 1; };
+    const RowEnds ends = {{column(row_.end[0]), column(row_.end[1]), column(row_.end[2])},
+                          column(row_.kind)};
+    for (const PixelRun& run : runs_.find(columns, ends, normal_row_)) add_run(run, window);
+    end_above_.swap(end_here_);
   }
 }
 
 void RayEnds::find_ends(const RangeImage& image, const VoxelGrid& grid, int v) {
-  const RayTable& rays = image.rays;
-  const int columns = rays.columns();
+  const int columns = image.rays.columns();
   const auto size = static_cast<std::size_t>(columns);
-  row_.length_m.resize(size);
-  row_.kind.resize(size);
-  row_.same_as_last.resize(size);
+  const auto row = static_cast<std::size_t>(v);
   const double farthest_m = kFarthestVoxels * grid.voxel_size_m;
-  follow_ranges(columns, image.range_m.data() + static_cast<std::size_t>(v) * size, farthest_m,
-                std::min(image.limits.max_m, farthest_m), row_.length_m.data(), row_.kind.data());
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const int a = static_cast<int>(axis);
+  const RowOfRays rays = {image.rays.column_sin.data(),
+                          image.rays.column_cos.data(),
+                          image.rays.row_sin[row],
+                          image.rays.row_cos[row],
+                          image.range_m.data() + row * size,
+                          farthest_m,
+                          std::min(image.limits.max_m, farthest_m)};
+  const auto axis = [&](int a) {
     const Eigen::Matrix3d& r = image.world_from_sensor;
-    row_.end[axis].resize(size);
-    end_voxels(
-        columns,
-        {{r(a, 0), r(a, 1), r(a, 2)}, image.position_m[a], grid.origin_m[a], grid.voxel_size_m},
-        row_.length_m.data(), rays.column_sin.data(), rays.column_cos.data(),
-        rays.row_sin[static_cast<std::size_t>(v)], rays.row_cos[static_cast<std::size_t>(v)],
-        row_.end[axis].data());
+    return AxisOfPoints{{r(a, 0), r(a, 1), r(a, 2)}, image.position_m[a], grid.origin_m[a]};
+  };
+  const AxisOfPoints axes[] = {axis(0), axis(1), axis(2)};
+  for (auto* part : {&row_.end[0], &row_.end[1], &row_.end[2], &row_.kind}) {
+    part->resize(1 + size + NormalRow::kPadding);
   }
-  compare_neighbours(columns, row_.end[0].data(), row_.end[1].data(), row_.end[2].data(),
-                     row_.kind.data(), row_.same_as_last.data());
+  const EndsOfRow ends = {row_.end[0].data() + 1, row_.end[1].data() + 1, row_.end[2].data() + 1,
+                          row_.kind.data() + 1};
+  if (has_reciprocal(grid.voxel_size_m) &&
+      end_voxels_by_reciprocal(columns, rays, axes, grid.voxel_size_m, ends)) {
+    return;
+  }
+  end_voxels(columns, rays, axes, grid.voxel_size_m, ends);
 }
 
-void RayEnds::add_run(int begin, int end, const MapWindow& window) {
-  const auto u = static_cast<std::size_t>(begin);
-  const std::int64_t pixels = end - begin;
+void RayEnds::add_run(const PixelRun& run, const MapWindow& window) {
+  const auto u = static_cast<std::size_t>(run.begin) + 1;
+  const std::int64_t pixels = run.end - run.begin;
   const VoxelIndex voxel(row_.end[0][u], row_.end[1][u], row_.end[2][u]);
   switch (static_cast<PixelKind>(row_.kind[u])) {
     case kPoint:
       if (window.contains(voxel)) {
         counts_.points += pixels;
-        add_points(begin, end, end_at(voxel, true).seen);
+        add_points(run, end_of(run, voxel, true).seen);
       } else {
         counts_.points_outside += pixels;
-        end_at(voxel, false);
+        end_of(run, voxel, false);
       }
       return;
     case kNoReturn:
       counts_.no_returns += pixels;
-      end_at(voxel, false);
+      end_of(run, voxel, false);
       return;
     case kInvalid:
       counts_.invalid += pixels;
@@ -164,27 +227,25 @@ void RayEnds::add_run(int begin, int end, const MapWindow& window) {
   }
 }
 
-void RayEnds::add_points(int begin, int end, SurfaceVoxel& seen) const {
-  std::int32_t x = 0;
-  std::int32_t y = 0;
-  std::int32_t z = 0;
-  std::int32_t count = 0;
-  std::int32_t quality = 0;
-  for (auto u = static_cast<std::size_t>(begin); u < static_cast<std::size_t>(end); ++u) {
-    x += normal_row_.x[u];
-    y += normal_row_.y[u];
-    z += normal_row_.z[u];
-    count += (normal_row_.x[u] | normal_row_.y[u] | normal_row_.z[u]) != 0;
-    quality = std::max(quality, normal_row_.quality[u]);
+RayEnd& RayEnds::end_of(const PixelRun& run, const VoxelIndex& voxel, bool is_surface) {
+  // Most runs end where the run above does.
+  std::uint32_t number = end_above_[static_cast<std::size_t>(run.begin)];
+  if (number >= ends_.size() || ends_[number].voxel != voxel ||
+      ends_[number].is_surface != is_surface) {
+    number = number_of(voxel, is_surface);
   }
-  seen.normal_sum[0] += x;
-  seen.normal_sum[1] += y;
-  seen.normal_sum[2] += z;
-  seen.normal_count += static_cast<std::uint32_t>(count);
-  seen.quality = std::max(seen.quality, static_cast<std::uint16_t>(quality));
+  // In pieces of one size, which are quicker to write than what is asked for; what goes beyond the
+  // run is overwritten by the next, or never read as the end of a run that has none: its voxel is
+  // looked at.
+  constexpr int kPiece = 8;
+  static_assert(kPiece <= NormalRow::kPadding);
+  for (int u = run.begin; u < run.end; u += kPiece) {
+    std::fill_n(&end_here_[static_cast<std::size_t>(u)], kPiece, number);
+  }
+  return ends_[number];
 }
 
-RayEnd& RayEnds::end_at(const VoxelIndex& voxel, bool is_surface) {
+std::uint32_t RayEnds::number_of(const VoxelIndex& voxel, bool is_surface) {
   if (2 * ends_.size() >= table_.size()) grow_table();
   const std::uint64_t key = key_of(voxel - sensor_, is_surface);
   const std::size_t mask = table_.size() - 1;
@@ -195,12 +256,16 @@ RayEnd& RayEnds::end_at(const VoxelIndex& voxel, bool is_surface) {
     ends_.push_back({voxel, is_surface, {}});
     used_.push_back(static_cast<std::uint32_t>(place));
   }
-  return ends_[table_[place].end];
+  return table_[place].end;
+}
+
+void RayEnds::make_table(std::size_t places) {
+  table_.assign(std::bit_ceil(std::max<std::size_t>(1024, places)), {kNoKey, 0});
 }
 
 void RayEnds::grow_table() {
   const std::vector<TableEntry> old = table_;
-  table_.assign(std::max<std::size_t>(1024, 2 * old.size()), {kNoKey, 0});
+  make_table(2 * old.size());
   used_.clear();
   const std::size_t mask = table_.size() - 1;
   for (const TableEntry& entry : old) {
@@ -213,10 +278,10 @@ void RayEnds::grow_table() {
 }
 
 std::size_t RayEnds::memory_bytes() const {
-  const std::size_t columns = row_.kind.capacity();
-  return normals_.memory_bytes() + columns * (sizeof(double) + 9 * sizeof(std::int32_t)) +
-         ends_.capacity() * sizeof(RayEnd) + table_.capacity() * sizeof(TableEntry) +
-         used_.capacity() * sizeof(std::uint32_t);
+  const std::size_t numbers =
+      4 * row_.kind.capacity() + end_above_.capacity() + end_here_.capacity() + used_.capacity();
+  return normals_.memory_bytes() + runs_.memory_bytes() + numbers * sizeof(std::uint32_t) +
+         ends_.capacity() * sizeof(RayEnd) + table_.capacity() * sizeof(TableEntry);
 }
 
 }  // namespace nextview

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mapper/normals.h"
+#include "mapper/pixel_runs.h"
 #include "mapper/voxel_map.h"
 #include "sensor_sim/range_image.h"
 
@@ -45,18 +46,17 @@ class RayEnds {
   std::size_t memory_bytes() const;
 
  private:
-  /// Of a row of pixels: how far each ray is followed, where it ends, and why there.
+  /// Of a row of pixels, from column -1 on: where each ray ends, and why there.
   struct Row {
-    std::vector<double> length_m;
     std::array<std::vector<std::int32_t>, 3> end;
-    std::vector<std::int32_t> kind;          ///< PixelKind
-    std::vector<std::int32_t> same_as_last;  ///< end and kind are those of the pixel before
+    std::vector<std::int32_t> kind;  ///< PixelKind
   };
 
   void find_ends(const RangeImage& image, const VoxelGrid& grid, int v);
-  void add_run(int begin, int end, const MapWindow& window);
-  void add_points(int begin, int end, SurfaceVoxel& seen) const;
-  RayEnd& end_at(const VoxelIndex& voxel, bool is_surface);
+  void add_run(const PixelRun& run, const MapWindow& window);
+  RayEnd& end_of(const PixelRun& run, const VoxelIndex& voxel, bool is_surface);
+  std::uint32_t number_of(const VoxelIndex& voxel, bool is_surface);
+  void make_table(std::size_t places);
   void grow_table();
 
   struct TableEntry {
@@ -68,7 +68,10 @@ class RayEnds {
   NormalEstimator normals_;
   NormalRow normal_row_;
   Row row_;
+  PixelRuns runs_;
   std::vector<RayEnd> ends_;
+  /// By column, a number in ends_ that the pixel above, or here, is likely to end at.
+  std::vector<std::uint32_t> end_above_, end_here_;
   std::vector<TableEntry> table_;    ///< open addressing by key; its size is a power of two
   std::vector<std::uint32_t> used_;  ///< places of the table in use
   PixelCounts counts_;

@@ -55,7 +55,7 @@ VoxelMap::VoxelMap(const VoxelGrid& grid, const MapWindow& window) : grid_(grid)
     throw std::invalid_argument("the map's window needs 2^" + std::to_string(bits) +
                                 " voxel slots; 2^31 are possible: choose larger voxels");
   }
-  labels_.assign(std::size_t{1} << bits, Label::Unmarked);
+  labels_.assign((std::size_t{1} << bits) + kLabelPadding, Label::Unmarked);
   blocks_.resize(blocks_along(mask_[0]) * blocks_along(mask_[1]) * blocks_along(mask_[2]));
 }
 
@@ -85,6 +85,7 @@ SurfaceVoxel& VoxelMap::surface_at(const VoxelIndex& index) {
   if (block == nullptr) {
     block = std::make_unique<SurfaceBlock>();
     block->entry.fill(SurfaceBlock::kNone);
+    block->voxels.reserve(kBlockSide);
   }
   std::uint16_t& entry = block->entry[entry_in_block(index)];
   if (entry == SurfaceBlock::kNone) {

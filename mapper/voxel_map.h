@@ -93,8 +93,11 @@ class VoxelMap {
     }
     return index;
   }
-  std::span<Label> labels() { return labels_; }
-  std::span<const Label> labels() const { return labels_; }
+  std::span<Label> labels() { return {labels_.data(), labels_.size() - kLabelPadding}; }
+  std::span<const Label> labels() const { return {labels_.data(), labels_.size() - kLabelPadding}; }
+  /// The label of any slot may be read as the first byte of a word: this many bytes follow the
+  /// last.
+  static constexpr std::size_t kLabelPadding = 3;
   /// Sides of the buffer, powers of two no smaller than the window's.
   std::array<int, 3> sides() const { return {mask_[0] + 1, mask_[1] + 1, mask_[2] + 1}; }
   std::array<int, 3> shifts() const { return shift_; }

@@ -242,5 +242,40 @@ TEST(MapUpdate, EqualsItsPlainTwinOverRandomWorldsAndViews) {
             << " views with normals\n";
 }
 
+// Points on the face between two voxels, or nearer to it than a product can tell.
+TEST(MapUpdate, EqualsItsPlainTwinWherePointsLieOnTheFacesOfVoxels) {
+  constexpr double kSizes_m[] = {0.125, 0.1, 0.05, 0.3, 1e-6, 1e-305};
+  std::int64_t points = 0;
+  for (int n = 0; n < 600; ++n) {
+    SCOPED_TRACE("case " + std::to_string(n));
+    RandomStream random(n, 1, 1, RandomPurpose::RangeNoise);
+    Case c;
+    c.grid.voxel_size_m = kSizes_m[random.below(6)];
+    const double half_m = 0.5 * c.grid.voxel_size_m;
+    c.window = {VoxelIndex::Constant(-10), VoxelIndex::Constant(21)};
+    const VoxelIndex sensor(uniform_int(random, -4, 4), uniform_int(random, -4, 4), 0);
+    SensorPose pose;
+    pose.position_m = c.grid.center_m(sensor);
+    pose.pan_rad = 0.5 * std::numbers::pi * uniform_int(random, -2, 2);
+    pose.tilt_rad = 0.5 * std::numbers::pi * uniform_int(random, -1, 1);
+    // The middle ray of an odd number looks along an axis.
+    const RayTable rays = make_ray_table(TiltedLineScan::with_aperture(5, 3, 0.5));
+    RangeImage image = scan_world({}, rays, {0.0, 30.0}, pose);
+    for (float& range_m : image.range_m) {
+      range_m = static_cast<float>(half_m * uniform_int(random, 0, 30));
+      if (random.below(3) == 0)
+        range_m = std::nextafterf(range_m, random.below(2) == 0 ? 0.0f : 1e9f);
+      range_m = std::max(range_m, 0.0f);
+    }
+    MapBuilder builder(c.grid, c.window);
+    ReferenceMapUpdate reference(c.grid, c.window);
+    points += builder.fold(image).points;
+    reference.fold(image);
+    expect_equal_maps(builder.map(), reference);
+    if (HasFailure()) return;
+  }
+  EXPECT_GT(points, 3000);
+}
+
 }  // namespace
 }  // namespace nextview

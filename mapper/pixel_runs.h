@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "mapper/normals.h"
+
+namespace nextview {
+
+/// A run of neighbouring pixels whose rays end alike, and the sums over their normals.
+struct PixelRun {
+  std::int32_t begin;  ///< columns begin ... end - 1
+  std::int32_t end;
+  std::int32_t normal_sum[4];  ///< x, y, z, and how many pixels have a normal
+  std::int32_t quality;        ///< the best
+};
+
+/// Where the rays of a row end, by column, from column -1 on (whatever stands there) to
+/// NormalRow::kPadding beyond the last.
+struct RowEnds {
+  const std::int32_t* voxel[3];
+  const std::int32_t* kind;  ///< pixels of different kinds share no run
+};
+
+/// The runs of a row, each as long as it can be, but none across a multiple of 65536 columns, so
+/// that sums fit.
+class PixelRuns {
+ public:
+  /// @return the runs from left to right; valid until the next call
+  std::span<const PixelRun> find(int columns, const RowEnds& ends, const NormalRow& normals);
+
+  std::size_t memory_bytes() const { return runs_.capacity() * sizeof(PixelRun); }
+
+ private:
+  std::vector<std::int32_t> begins_;
+  std::vector<PixelRun> runs_;
+};
+
+}  // namespace nextview
