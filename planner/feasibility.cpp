@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -45,30 +46,41 @@ void FeasibilityParameters::check() const {
   require(lift_min_m <= lift_max_m, "lift_min_m", "at most lift_max_m");
 }
 
+SegmentWalk::SegmentWalk(const VoxelGrid& grid, const Eigen::Vector3d& from_m,
+                         const Eigen::Vector3d& to_m)
+    : grid_(grid),
+      from_m_(from_m),
+      to_m_(to_m),
+      voxel_(grid.voxel_of(from_m)),
+      last_(grid.voxel_of(to_m)) {
+  for (int axis = 0; axis < 3; ++axis) find_boundary(axis);
+}
+
+void SegmentWalk::find_boundary(int axis) {
+  if (voxel_[axis] == last_[axis]) {
+    boundary_[axis] = std::numeric_limits<double>::infinity();
+    return;
+  }
+  const double side = last_[axis] > voxel_[axis] ? 0.5 : -0.5;
+  const double boundary_m =
+      grid_.origin_m[axis] + (static_cast<double>(voxel_[axis]) + side) * grid_.voxel_size_m;
+  boundary_[axis] = (boundary_m - from_m_[axis]) / (to_m_[axis] - from_m_[axis]);
+}
+
+void SegmentWalk::step() {
+  int axis = 0;
+  boundary_.minCoeff(&axis);
+  voxel_[axis] += last_[axis] > voxel_[axis] ? 1 : -1;
+  find_boundary(axis);
+}
+
 std::vector<VoxelIndex> voxels_along(const VoxelGrid& grid, const Eigen::Vector3d& from_m,
                                      const Eigen::Vector3d& to_m) {
-  VoxelIndex voxel = grid.voxel_of(from_m);
-  const VoxelIndex last = grid.voxel_of(to_m);
-  const VoxelIndex left = (last - voxel).cwiseAbs();
-  std::vector<VoxelIndex> voxels = {voxel};
-  voxels.reserve(static_cast<std::size_t>(left.sum()) + 1);
-  while (voxel != last) {
-    // Step along the axis whose next voxel boundary comes first on the way, t in [0, 1].
-    int next_axis = -1;
-    double next_t = 0.0;
-    for (int axis = 0; axis < 3; ++axis) {
-      if (voxel[axis] == last[axis]) continue;
-      const double side = last[axis] > voxel[axis] ? 0.5 : -0.5;
-      const double boundary =
-          grid.origin_m[axis] + (static_cast<double>(voxel[axis]) + side) * grid.voxel_size_m;
-      const double t = (boundary - from_m[axis]) / (to_m[axis] - from_m[axis]);
-      if (next_axis < 0 || t < next_t) {
-        next_axis = axis;
-        next_t = t;
-      }
-    }
-    voxel[next_axis] += last[next_axis] > voxel[next_axis] ? 1 : -1;
-    voxels.push_back(voxel);
+  SegmentWalk walk(grid, from_m, to_m);
+  std::vector<VoxelIndex> voxels = {walk.voxel()};
+  while (!walk.at_end()) {
+    walk.step();
+    voxels.push_back(walk.voxel());
   }
   return voxels;
 }
@@ -101,9 +113,8 @@ FeasibleSpace::FeasibleSpace(const VoxelMap& map, const FeasibilityParameters& p
       }
     }
   }
-  std::stable_sort(offsets_.begin(), offsets_.end(), [](const Offset& a, const Offset& b) {
-    return a.squared_length < b.squared_length;
-  });
+  std::sort(offsets_.begin(), offsets_.end(),
+            [](const Offset& a, const Offset& b) { return a.squared_length < b.squared_length; });
   for (int axis = 0; axis < 3; ++axis) {
     for (const int sign : {-1, 1}) {
       for (const Offset& offset : offsets_) {
@@ -139,8 +150,10 @@ bool FeasibleSpace::path_clear(const Eigen::Vector3d& position_m) {
   const int at_present = surroundings(present_, nullptr).nearest_occupied;
   bool got_clear = at_present == clear_;
   VoxelIndex last = present_;
-  for (const VoxelIndex& voxel : voxels_along(map_.grid(), present_m_, position_m)) {
-    if (voxel == present_) continue;
+  SegmentWalk walk(map_.grid(), present_m_, position_m);
+  while (!walk.at_end()) {
+    walk.step();
+    const VoxelIndex& voxel = walk.voxel();
     if (map_.label(voxel) != Label::Empty) return false;
     const Surroundings& near = surroundings(voxel, &last);
     if (near.unknown_near) return false;
@@ -177,10 +190,13 @@ const FeasibleSpace::Surroundings& FeasibleSpace::surroundings(const VoxelIndex&
 FeasibleSpace::Surroundings FeasibleSpace::look_around(const VoxelIndex& voxel,
                                                        const std::vector<Offset>& offsets) const {
   Surroundings result{clear_, false};
+  const VoxelIndex corner = VoxelIndex::Constant(reach_);
+  const bool all_inside = map_.contains(voxel - corner) && map_.contains(voxel + corner);
+  const auto labels = map_.labels();
   for (const auto& [step, squared_length] : offsets) {  // nearest first
     if (squared_length >= std::max(body_, result.nearest_occupied)) break;
     const VoxelIndex neighbour = voxel + step;
-    const Label label = map_.label(neighbour);
+    const Label label = all_inside ? labels[map_.slot(neighbour)] : map_.label(neighbour);
     if (label == Label::Empty) continue;
     if (label == Label::Occupied) {
       result.nearest_occupied = std::min(result.nearest_occupied, squared_length);
