@@ -6,8 +6,8 @@
 #include <limits>
 
 #include "mapper/normal_slopes.h"
-#include "mapper/vector_clones.h"
 #include "mapper/voxel_map.h"
+#include "sensor_sim/vector_clones.h"
 
 namespace nextview {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "mapper/vector_clones.h"
+#include "sensor_sim/vector_clones.h"
 
 namespace nextview {
 
