@@ -32,7 +32,7 @@ enum class Part {
 };
 
 const std::set<std::string> kSensorGeometry = {"random_stream", "range_image", "sensor_geometry",
-                                               "sensor_pose"};
+                                               "sensor_pose", "vector_clones"};
 const std::set<std::string> kSensorBus = {"range_image_message", "sensor_config"};
 const std::set<std::string> kScoring = {"position_tree", "reachable_positions", "surface_samples",
                                         "surface_shadow", "visible_surface"};
