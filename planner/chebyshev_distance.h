@@ -24,19 +24,20 @@ class ChebyshevDistance {
  public:
   static constexpr std::uint8_t kLargest = 31;
 
-  /// A box of cells, to be filled by rows along x: 0 for an obstacle, kLargest for all others.
-  void resize(const VoxelIndex& cells);
-  std::uint8_t* row(int y, int z) {
-    return &distances_[kMargin + static_cast<std::size_t>(z) * (layer_ + kMargin) +
-                       static_cast<std::size_t>(y) * stride_];
-  }
+  /// A box of cells, all rows of which are to be filled next.
+  /// @param threads how many will call find()
+  void resize(const VoxelIndex& cells, int threads = 1);
+  /// Fills the row along x at (y, z): bytes up to largest_free are free cells, others obstacles.
+  void fill_row(int y, int z, const std::uint8_t* bytes, std::uint8_t largest_free);
+  /// The distances along x at (y, z), after find().
+  const std::uint8_t* row(int y, int z) const { return &distances_[place(y, z)]; }
 
-  /// Replaces what the rows were filled with by distances.
+  /// Replaces what the rows were filled with by distances. To be called by all threads of an OpenMP
+  /// region, or outside of one: of several threads one goes up and one down along z, then they
+  /// share the layers. The result is the same.
   void find();
 
-  std::size_t memory_bytes() const {
-    return distances_.capacity() + narrowed_.capacity() + lowered_.capacity();
-  }
+  std::size_t memory_bytes() const { return distances_.capacity() + downwards_.capacity(); }
 
  private:
   // Loops run over all rows of a layer as if they were one long row. So many free cells lie between
@@ -45,17 +46,28 @@ class ChebyshevDistance {
   static constexpr std::size_t kMargin = 32;
   static_assert(kMargin > kLargest);
 
-  void lower_layer(int z, int from_z);
-  void lower_rows(int y, int from_y);
-  void lower_along_rows(int z);
+  using Bytes = std::vector<std::uint8_t>;
+  // A layer to work with, and a row more on both sides.
+  Bytes free_layer() const { return Bytes(layer_ + 2 * stride_, kLargest); }
 
+  std::size_t place(int y, int z) const {
+    return kMargin + static_cast<std::size_t>(z) * (layer_ + kMargin) +
+           static_cast<std::size_t>(y) * stride_;
+  }
+  void go_up(Bytes& distances) const;
+  void go_down(Bytes& distances) const;
+  void finish_layers(int begin_z, int end_z);
+  void lower_layer(Bytes& distances, int z, int from_z, Bytes& narrowed) const;
+  void lower_rows(int y, int from_y, int begin_z, int end_z);
+  void lower_along_rows(int z, Bytes& a, Bytes& b);
+
+  VoxelIndex cells_ = VoxelIndex::Zero();
   int rows_ = 0;
   int layers_ = 0;
   std::size_t stride_ = 0;  ///< of a row and its margin
   std::size_t layer_ = 0;   ///< of all rows of a layer
-  std::vector<std::uint8_t> distances_;
-  std::vector<std::uint8_t> narrowed_;  ///< a layer, and a row more on both sides
-  std::vector<std::uint8_t> lowered_;
+  Bytes distances_;
+  Bytes downwards_;  ///< what the way down finds while another thread goes up; else empty
 };
 
 }  // namespace nextview

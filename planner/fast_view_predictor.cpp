@@ -1,6 +1,6 @@
 #include "planner/fast_view_predictor.h"
 
-#include <tbb/parallel_for.h>
+#include <omp.h>
 
 #include <algorithm>
 #include <array>
@@ -14,9 +14,8 @@ namespace {
 
 constexpr std::size_t kPacketRays = RayBundle::kPacketRays;
 
-/// What a thread casts at a time: long enough to keep the kernel's turns busy, and short enough
-/// that the last to be done is not waited for long.
-constexpr std::size_t kPacketsOfPiece = 128;
+/// What a thread takes from a table at a time when there are several: a few microseconds of work.
+constexpr std::size_t kPortion = 64;
 
 struct TabulatedRay {
   IntegerLine line;  // from voxel (0, 0, 0)
@@ -96,7 +95,6 @@ FastViewPredictor::FastViewPredictor(const PredictionRaster& raster, double voxe
     : RasterViewPredictor(raster, voxel_size_m, std::move(orientations), counts_quality),
       rays_per_view_(static_cast<std::int64_t>(raster.rays.pixels())),
       packets_of_(this->orientations().size()),
-      arena_(std::max(threads, 1)),
       workspaces_(static_cast<std::size_t>(std::max(threads, 1))) {
   if (threads < 1) throw std::invalid_argument("a view predictor needs a thread");
   make_tables(raster, voxel_size_m);
@@ -111,7 +109,6 @@ void FastViewPredictor::make_tables(const PredictionRaster& raster, double voxel
       packets[table].insert(packets[table].end(), of_view[table].begin(), of_view[table].end());
     }
   }
-  tables_.resize(packets.size());
   for (std::size_t i = 0; i < tables_.size(); ++i) {
     std::stable_sort(packets[i].begin(), packets[i].end(),
                      [](const Packet& a, const Packet& b) { return a.place() < b.place(); });
@@ -126,17 +123,12 @@ void FastViewPredictor::make_tables(const PredictionRaster& raster, double voxel
       for (const TabulatedRay& ray : packet.rays) table.directions.push_back(ray.direction);
     }
     if (counts_quality()) table.occupied_at.resize(table.bundle.rays());
-    const std::size_t count = table.bundle.packets();
-    const std::size_t length = workspaces_.size() == 1 ? count : kPacketsOfPiece;
-    for (std::size_t begin = 0; begin < count; begin += length) {
-      pieces_.push_back({i, {begin, std::min(begin + length, count)}});
-    }
   }
 }
 
 void FastViewPredictor::prepare(const VoxelMap& map) {
   if (field_ && field_->window() == map.window()) return;
-  field_.emplace(map);
+  field_.emplace(map, threads());
   surfaces_ = SurfaceTable();
   if (!counts_quality()) return;
   std::vector<std::uint32_t> slots;
@@ -160,31 +152,35 @@ void FastViewPredictor::map_changed(const VoxelMap& map,
   surfaces_.update(map, *field_, updated_surfaces);
 }
 
-template <class Work>
-void FastViewPredictor::share_out(std::size_t count, const Work& work) {
-  if (workspaces_.size() == 1) {
-    for (std::size_t i = 0; i < count; ++i) work(i, workspaces_.front());
-    return;
-  }
-  arena_.execute([&] {
-    tbb::parallel_for(std::size_t{0}, count, [&](std::size_t i) {
-      work(i, workspaces_[static_cast<std::size_t>(tbb::this_task_arena::current_thread_index())]);
-    });
-  });
-}
-
 void FastViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
                                 std::span<ViewCounts> per_orientation) {
   check_arguments(map, sensor, per_orientation.size());
   prepare(map);
-  for (Workspace& workspace : workspaces_) {
-    workspace.counts.assign(per_orientation.size(), RayCounts());
+  std::fill(per_orientation.begin(), per_orientation.end(), ViewCounts());
+  for (Table& table : tables_) {
+    const std::size_t packets = table.bundle.packets();
+    table.queue.refill(packets, threads() == 1 ? packets : kPortion);
   }
-  share_out(pieces_.size(),
-            [&](std::size_t i, Workspace& workspace) { cast(pieces_[i], sensor, workspace); });
+#pragma omp parallel num_threads(threads()) if (threads() > 1)
+  {
+    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+    Workspace& workspace = workspaces_[thread];
+    workspace.counts.assign(per_orientation.size(), RayCounts());
+    // Each begins at a table of its own: only those that are done early share one.
+    const std::size_t first = thread * tables_.size() / workspaces_.size();
+    for (std::size_t i = 0; i < tables_.size(); ++i) {
+      cast(tables_[(first + i) % tables_.size()], sensor, workspace);
+    }
+    if (counts_quality()) {
+#pragma omp barrier
+#pragma omp for schedule(dynamic)
+      for (std::size_t i = 0; i < per_orientation.size(); ++i) {
+        count_improvements(i, workspace, per_orientation[i]);
+      }
+    }
+  }
   for (std::size_t i = 0; i < per_orientation.size(); ++i) {
     ViewCounts& counts = per_orientation[i];
-    counts = ViewCounts();
     for (const Workspace& workspace : workspaces_) {
       counts.occupied += workspace.counts[i].occupied;
       counts.occlusion_plane += workspace.counts[i].occlusion_plane;
@@ -192,19 +188,14 @@ void FastViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
     }
     counts.open = rays_per_view_ - counts.occupied - counts.occlusion_plane - counts.unseen;
   }
-  if (!counts_quality()) return;
-  share_out(per_orientation.size(), [&](std::size_t i, Workspace& workspace) {
-    count_improvements(i, workspace, per_orientation[i]);
-  });
 }
 
-void FastViewPredictor::cast(const Piece& piece, const VoxelIndex& sensor, Workspace& workspace) {
-  Table& table = tables_[piece.table];
-  RayEnds ends;
-  ends.counts = workspace.counts.data();
-  if (counts_quality()) ends.occupied_at = table.occupied_at.data();
+void FastViewPredictor::cast(Table& table, const VoxelIndex& sensor, Workspace& workspace) const {
+  RayOutcomes outcomes;
+  outcomes.counts = workspace.counts.data();
+  if (counts_quality()) outcomes.occupied_at = table.occupied_at.data();
   cast_bundle(field_->bytes(), field_->shifts(), static_cast<std::int32_t>(field_->offset(sensor)),
-              field_->steps_from(sensor), table.bundle, piece.packets, ends);
+              field_->steps_from(sensor), table.bundle, table.queue, outcomes);
 }
 
 void FastViewPredictor::count_improvements(std::size_t orientation, Workspace& workspace,

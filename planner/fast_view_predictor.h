@@ -1,7 +1,6 @@
 #pragma once
 
-#include <tbb/task_arena.h>
-
+#include <array>
 #include <optional>
 #include <vector>
 
@@ -16,8 +15,8 @@ namespace nextview {
 /// all orientations are tabulated once (their lines do not depend on where the sensor is), and walk
 /// through a FreeSpaceField many at a time (ray_kernel.h). The table is sorted by where rays point,
 /// not by whose they are, so that rays of different orientations that go the same way go together.
-/// Pieces of the table are shared out among the threads, each of which counts for itself; sums of
-/// integers do not depend on how.
+/// Threads share the tables between them and count each for itself; sums of integers do not depend
+/// on how.
 class FastViewPredictor : public RasterViewPredictor {
  public:
   /// @param threads how many may work at a time, at least 1
@@ -40,11 +39,7 @@ class FastViewPredictor : public RasterViewPredictor {
     RayBundle bundle;                            // its groups are orientations
     std::vector<QuantisedDirection> directions;  // world frame, by ray; for f_quality only
     std::vector<std::int32_t> occupied_at;       // where rays ended; for f_quality only
-  };
-  // What one thread casts at a time.
-  struct Piece {
-    std::size_t table;
-    PacketRange packets;
+    PacketQueue queue;
   };
   struct PacketOfView {
     std::size_t table;
@@ -56,22 +51,17 @@ class FastViewPredictor : public RasterViewPredictor {
     ImprovementCount improvement;
   };
 
+  int threads() const { return static_cast<int>(workspaces_.size()); }
   void make_tables(const PredictionRaster& raster, double voxel_size_m);
   void prepare(const VoxelMap& map);
-  void cast(const Piece& piece, const VoxelIndex& sensor, Workspace& workspace);
+  void cast(Table& table, const VoxelIndex& sensor, Workspace& workspace) const;
   void count_improvements(std::size_t orientation, Workspace& workspace, ViewCounts& counts) const;
-  // Calls work(i, workspace) for every i < count, from all threads.
-  template <class Work>
-  void share_out(std::size_t count, const Work& work);
-
   std::int64_t rays_per_view_;
-  std::vector<Table> tables_;
-  std::vector<Piece> pieces_;
+  std::array<Table, 6> tables_;                        // by driving axis and sign
   std::vector<std::vector<PacketOfView>> packets_of_;  // by orientation; for f_quality only
   std::optional<FreeSpaceField> field_;                // of the map of the last call
   SurfaceTable surfaces_;
-  tbb::task_arena arena_;
-  std::vector<Workspace> workspaces_;  // by thread of the arena
+  std::vector<Workspace> workspaces_;  // by thread
 };
 
 }  // namespace nextview

@@ -4,21 +4,13 @@
 #include <bit>
 #include <stdexcept>
 
-#include "mapper/vector_clones.h"
+#include "sensor_sim/vector_clones.h"
 
 namespace nextview {
 
 namespace {
 
 using Byte = std::uint8_t;
-
-// What ChebyshevDistance begins with: 0 for what ends a walk.
-NEXTVIEW_VECTOR_CLONES
-void mark_obstacles(const Byte* bytes, Byte* __restrict distances, std::size_t size) {
-  for (std::size_t i = 0; i < size; ++i) {
-    distances[i] = bytes[i] <= FreeSpaceField::kMaxJump ? ChebyshevDistance::kLargest : 0;
-  }
-}
 
 // What ends a walk stays what it is: its distance is 0.
 NEXTVIEW_VECTOR_CLONES
@@ -45,8 +37,10 @@ std::uint8_t FreeSpaceField::byte_of(Label label) {
   throw std::logic_error("a label that does not exist");
 }
 
-FreeSpaceField::FreeSpaceField(const VoxelMap& map)
-    : window_(map.window()), cells_(map.window().size + VoxelIndex::Constant(2)) {
+FreeSpaceField::FreeSpaceField(const VoxelMap& map, int threads)
+    : window_(map.window()),
+      cells_(map.window().size + VoxelIndex::Constant(2)),
+      threads_(threads) {
   int bits = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     shift_[axis] = bits;
@@ -64,17 +58,31 @@ FreeSpaceField::FreeSpaceField(const VoxelMap& map)
       }
     }
   }
+#pragma omp parallel num_threads(threads_) if (threads_ > 1)
   find_distances({VoxelIndex::Zero(), cells_});
 }
 
 void FreeSpaceField::update(const VoxelMap& map, std::span<const std::uint32_t> changed_slots) {
   if (map.window() != window_) {
-    *this = FreeSpaceField(map);
+    *this = FreeSpaceField(map, threads_);
     return;
   }
   Box changed{cells_, VoxelIndex::Zero()};
+#pragma omp parallel num_threads(threads_) if (threads_ > 1)
+  {
+    take_labels(map, changed_slots, changed);
+    if ((changed.min.array() < changed.end.array()).all()) find_distances(changed);
+  }
+}
+
+void FreeSpaceField::take_labels(const VoxelMap& map, std::span<const std::uint32_t> changed_slots,
+                                 Box& changed) {
+  Box mine{cells_, VoxelIndex::Zero()};
   const auto labels = map.labels();
-  for (const std::uint32_t slot : changed_slots) {
+  // In portions, so that whoever is awake first begins.
+#pragma omp for schedule(dynamic, 1024) nowait
+  for (std::size_t i = 0; i < changed_slots.size(); ++i) {
+    const std::uint32_t slot = changed_slots[i];
     const VoxelIndex index = map.index_of_slot(slot);
     std::uint8_t& byte = bytes_[offset(index)];
     const Label label = labels[slot];
@@ -83,11 +91,16 @@ void FreeSpaceField::update(const VoxelMap& map, std::span<const std::uint32_t> 
     byte = byte_of(label);
     if (was_empty != is_empty) {
       const VoxelIndex cell = index - window_.min + VoxelIndex::Ones();
-      changed.min = changed.min.cwiseMin(cell);
-      changed.end = changed.end.cwiseMax(cell + VoxelIndex::Ones());
+      mine.min = mine.min.cwiseMin(cell);
+      mine.end = mine.end.cwiseMax(cell + VoxelIndex::Ones());
     }
   }
-  if ((changed.min.array() < changed.end.array()).all()) find_distances(changed);
+#pragma omp critical
+  {
+    changed.min = changed.min.cwiseMin(mine.min);
+    changed.end = changed.end.cwiseMax(mine.end);
+  }
+#pragma omp barrier
 }
 
 void FreeSpaceField::find_distances(const Box& changed) {
@@ -100,22 +113,21 @@ void FreeSpaceField::find_distances(const Box& changed) {
   const Box fresh = grown(changed);
   const Box seen = grown(fresh);
 
-  const auto length = [](const Box& box) {
-    return static_cast<std::size_t>(box.end[0] - box.min[0]);
-  };
-  distance_.resize(seen.end - seen.min);
+  const auto length = static_cast<std::size_t>(fresh.end[0] - fresh.min[0]);
+#pragma omp single
+  distance_.resize(seen.end - seen.min, threads_);
+#pragma omp for
   for (int z = seen.min[2]; z < seen.end[2]; ++z) {
     for (int y = seen.min[1]; y < seen.end[1]; ++y) {
-      mark_obstacles(row(y, z) + seen.min[0], distance_.row(y - seen.min[1], z - seen.min[2]),
-                     length(seen));
+      distance_.fill_row(y - seen.min[1], z - seen.min[2], row(y, z) + seen.min[0], kMaxJump);
     }
   }
   distance_.find();
+#pragma omp for
   for (int z = fresh.min[2]; z < fresh.end[2]; ++z) {
     for (int y = fresh.min[1]; y < fresh.end[1]; ++y) {
       const Byte* const distances = distance_.row(y - seen.min[1], z - seen.min[2]);
-      take_distances(distances + (fresh.min[0] - seen.min[0]), row(y, z) + fresh.min[0],
-                     length(fresh));
+      take_distances(distances + (fresh.min[0] - seen.min[0]), row(y, z) + fresh.min[0], length);
     }
   }
 }

@@ -35,8 +35,9 @@ class FreeSpaceField {
   static constexpr std::uint8_t kOutside = 4 * (kMaxJump + 1);
 
   /// The field of a whole map.
+  /// @param threads how many may work at a time, here and in update(), at least 1
   /// @throws std::invalid_argument when it would need 2 GiB or more
-  explicit FreeSpaceField(const VoxelMap& map);
+  explicit FreeSpaceField(const VoxelMap& map, int threads = 1);
 
   /// Follows the map after a change of the labels at these slots (and of no others).
   void update(const VoxelMap& map, std::span<const std::uint32_t> changed_slots);
@@ -73,6 +74,9 @@ class FreeSpaceField {
     return &bytes_[(static_cast<std::size_t>(y) << shift_[1]) +
                    (static_cast<std::size_t>(z) << shift_[2])];
   }
+  // Reads the labels again and widens a box by the cells that have become Empty or are so no
+  // longer. To be called by all threads of an OpenMP region, or outside of one; and so is the next.
+  void take_labels(const VoxelMap& map, std::span<const std::uint32_t> changed_slots, Box& changed);
   void find_distances(const Box& changed);
 
   MapWindow window_;
@@ -80,6 +84,7 @@ class FreeSpaceField {
   std::array<int, 3> shift_;
   std::vector<std::uint8_t> bytes_;
   ChebyshevDistance distance_;  ///< workspace
+  int threads_;
 };
 
 }  // namespace nextview

@@ -83,9 +83,11 @@ std::vector<RayBundle> cube_faces(double reach) {
 }  // namespace
 
 PanoramaViewPredictor::PanoramaViewPredictor(const PredictionRaster& raster, double voxel_size_m,
-                                             std::vector<Orientation> orientations)
+                                             std::vector<Orientation> orientations, int threads)
     : RasterViewPredictor(raster, voxel_size_m, std::move(orientations), false),
-      rays_per_view_(static_cast<std::int64_t>(raster.rays.pixels())) {
+      rays_per_view_(static_cast<std::int64_t>(raster.rays.pixels())),
+      threads_(threads) {
+  if (threads < 1) throw std::invalid_argument("a view predictor needs a thread");
   faces_ = cube_faces(prediction_reach(raster, voxel_size_m));
   for (const Orientation& orientation : this->orientations()) {
     append_view(raster.rays, orientation);
@@ -122,7 +124,7 @@ void PanoramaViewPredictor::map_changed(const VoxelMap& map,
   if (field_) {
     field_->update(map, changed_slots);
   } else {
-    field_.emplace(map);
+    field_.emplace(map, threads_);
   }
 }
 
@@ -145,25 +147,33 @@ void PanoramaViewPredictor::map_changed(const VoxelMap& map,
 void PanoramaViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
                                     std::span<ViewCounts> per_orientation) {
   check_arguments(map, sensor, per_orientation.size());
-  if (!field_ || field_->window() != map.window()) field_.emplace(map);
+  if (!field_ || field_->window() != map.window()) field_.emplace(map, threads_);
   for (auto* bits : {&panorama_.occupied, &panorama_.occlusion_plane, &panorama_.unseen}) {
     bits->assign(kWords, 0);
   }
-  for (std::size_t face = 0; face < faces_.size(); ++face) {
-    const std::size_t word = face * kSide * kSide / 64;
-    RayEnds ends;
-    ends.occupied = reinterpret_cast<std::uint8_t*>(&panorama_.occupied[word]);
-    ends.occlusion_plane = reinterpret_cast<std::uint8_t*>(&panorama_.occlusion_plane[word]);
-    ends.unseen = reinterpret_cast<std::uint8_t*>(&panorama_.unseen[word]);
-    cast_bundle(field_->bytes(), field_->shifts(),
-                static_cast<std::int32_t>(field_->offset(sensor)), field_->steps_from(sensor),
-                faces_[face], {0, faces_[face].packets()}, ends);
+#pragma omp parallel num_threads(threads_) if (threads_ > 1)
+  {
+#pragma omp for schedule(dynamic)
+    for (std::size_t face = 0; face < faces_.size(); ++face) cast_face(face, sensor);
+#pragma omp for schedule(dynamic, 16)
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      ViewCounts& counts = per_orientation[i];
+      counts = count(panorama_, &weights_[views_[i].begin], weights_.data() + views_[i].end);
+      counts.open = rays_per_view_ - counts.occupied - counts.occlusion_plane - counts.unseen;
+    }
   }
-  for (std::size_t i = 0; i < views_.size(); ++i) {
-    ViewCounts& counts = per_orientation[i];
-    counts = count(panorama_, &weights_[views_[i].begin], weights_.data() + views_[i].end);
-    counts.open = rays_per_view_ - counts.occupied - counts.occlusion_plane - counts.unseen;
-  }
+}
+
+void PanoramaViewPredictor::cast_face(std::size_t face, const VoxelIndex& sensor) {
+  const std::size_t word = face * kSide * kSide / 64;
+  PacketQueue packets;
+  packets.refill(faces_[face].packets(), faces_[face].packets());
+  RayOutcomes outcomes;
+  outcomes.occupied = reinterpret_cast<std::uint8_t*>(&panorama_.occupied[word]);
+  outcomes.occlusion_plane = reinterpret_cast<std::uint8_t*>(&panorama_.occlusion_plane[word]);
+  outcomes.unseen = reinterpret_cast<std::uint8_t*>(&panorama_.unseen[word]);
+  cast_bundle(field_->bytes(), field_->shifts(), static_cast<std::int32_t>(field_->offset(sensor)),
+              field_->steps_from(sensor), faces_[face], packets, outcomes);
 }
 
 }  // namespace nextview

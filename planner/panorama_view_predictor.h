@@ -26,10 +26,11 @@ class PanoramaViewPredictor : public RasterViewPredictor {
  public:
   static constexpr int kFaceSide = 64;  ///< 90 / 64 = 1.4 degrees a cell; a multiple of 8
 
-  /// @throws std::invalid_argument when there are no orientations or rays, or a length is not
-  ///         positive
+  /// @param threads how many may work at a time, at least 1
+  /// @throws std::invalid_argument when there are no orientations, rays or threads, or a length is
+  ///         not positive
   PanoramaViewPredictor(const PredictionRaster& raster, double voxel_size_m,
-                        std::vector<Orientation> orientations);
+                        std::vector<Orientation> orientations, int threads = 1);
 
   void predict(const VoxelMap& map, const VoxelIndex& sensor,
                std::span<ViewCounts> per_orientation) override;
@@ -59,6 +60,7 @@ class PanoramaViewPredictor : public RasterViewPredictor {
     std::vector<std::uint64_t> unseen;
   };
 
+  void cast_face(std::size_t face, const VoxelIndex& sensor);
   void append_view(const RayTable& rays, const Orientation& orientation);
   static ViewCounts count(const Panorama& panorama, const WeightWord* begin, const WeightWord* end);
 
@@ -68,6 +70,7 @@ class PanoramaViewPredictor : public RasterViewPredictor {
   std::vector<View> views_;
   Panorama panorama_;
   std::optional<FreeSpaceField> field_;
+  int threads_;
 };
 
 }  // namespace nextview

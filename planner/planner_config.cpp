@@ -40,7 +40,7 @@ std::unique_ptr<ViewPredictor> make_predictor(const run_config_t& config) {
   const bool use_quality = config.use_quality != 0;
   if (subdivisions > 0 && !use_quality) {
     return std::make_unique<PanoramaViewPredictor>(raster, config.voxel_size_m,
-                                                   std::move(orientations));
+                                                   std::move(orientations), config.threads);
   }
   return std::make_unique<FastViewPredictor>(raster, config.voxel_size_m, std::move(orientations),
                                              use_quality, config.threads);

@@ -90,7 +90,7 @@ HWY_INLINE void store_bits(Mask mask, std::size_t first, std::uint8_t* bits) {
 // Says where the rays of a vector have ended.
 template <int direction>
 HWY_INLINE void finish(const RayBundle& bundle, const Walk& walk, const Rays& rays,
-                       const RayEnds& ends) {
+                       const RayOutcomes& outcomes) {
   const Tag d;
   const auto too_far = hn::Gt(rays.k, hn::LoadU(d, &bundle.reach[rays.first]));
   const Vector kind = hn::IfThenElse(too_far, hn::Set(d, FreeSpaceField::kOutside),
@@ -98,79 +98,83 @@ HWY_INLINE void finish(const RayBundle& bundle, const Walk& walk, const Rays& ra
   const auto occupied = hn::Eq(kind, hn::Set(d, FreeSpaceField::kOccupied));
   const auto plane = hn::Eq(kind, hn::Set(d, FreeSpaceField::kOcclusionPlane));
   const auto unseen = hn::Eq(kind, hn::Set(d, FreeSpaceField::kUnseen));
-  if (ends.counts != nullptr) {
+  if (outcomes.counts != nullptr) {
     const std::int32_t group = bundle.group[rays.first / RayBundle::kPacketRays];
-    RayCounts& counts = ends.counts[group];
+    RayCounts& counts = outcomes.counts[group];
     counts.occupied += static_cast<std::int32_t>(hn::CountTrue(d, occupied));
     counts.occlusion_plane += static_cast<std::int32_t>(hn::CountTrue(d, plane));
     counts.unseen += static_cast<std::int32_t>(hn::CountTrue(d, unseen));
   }
-  if (ends.occupied_at != nullptr) {
+  if (outcomes.occupied_at != nullptr) {
     hn::StoreU(hn::IfThenElse(occupied, offset_of<direction>(walk, rays), hn::Set(d, -1)), d,
-               ends.occupied_at + rays.first);
+               outcomes.occupied_at + rays.first);
   }
-  if (ends.occupied != nullptr) {
-    store_bits(occupied, rays.first, ends.occupied);
-    store_bits(plane, rays.first, ends.occlusion_plane);
-    store_bits(unseen, rays.first, ends.unseen);
+  if (outcomes.occupied != nullptr) {
+    store_bits(occupied, rays.first, outcomes.occupied);
+    store_bits(plane, rays.first, outcomes.occlusion_plane);
+    store_bits(unseen, rays.first, outcomes.unseen);
   }
 }
 
-// Casts as long as there are enough vectors to keep all turns busy. Returns the first ray left
-// over.
-template <int direction>
-HWY_INLINE std::size_t cast_in_turns(const RayBundle& bundle, const Walk& walk, Vector first_k,
-                                     std::size_t next, std::size_t end, const RayEnds& ends) {
-  const std::size_t lanes = hn::Lanes(Tag());
-  if (end - next < kInFlight * lanes) return next;
-  Rays turns[kInFlight];
-  for (Rays& rays : turns) {
-    rays = load(bundle, next, first_k);
-    next += lanes;
+// The vectors of rays still to be cast, one after the other.
+class Supply {
+ public:
+  explicit Supply(PacketQueue& packets) : packets_(packets) { take(); }
+
+  // Whether there is a next one.
+  HWY_INLINE bool any() {
+    if (next_ == end_) take();
+    return next_ != end_;
   }
-  bool table_is_empty = false;
-  while (!table_is_empty) {
+  HWY_INLINE Rays next(const RayBundle& bundle, Vector first_k) {
+    const std::size_t first = next_;
+    next_ += hn::Lanes(Tag());
+    return load(bundle, first, first_k);
+  }
+
+ private:
+  void take() {
+    const PacketQueue::Portion portion = packets_.take();
+    next_ = portion.begin * RayBundle::kPacketRays;
+    end_ = portion.end * RayBundle::kPacketRays;
+  }
+
+  PacketQueue& packets_;
+  std::size_t next_ = 0;
+  std::size_t end_ = 0;
+};
+
+template <int direction>
+HWY_INLINE void cast(const RayBundle& bundle, const Walk& walk, Vector first_k, Supply supply,
+                     const RayOutcomes& outcomes) {
+  Rays turns[kInFlight];
+  std::size_t taken = 0;
+  for (; taken < kInFlight && supply.any(); ++taken) turns[taken] = supply.next(bundle, first_k);
+  bool all_taken = taken == kInFlight;
+  while (all_taken) {
     bool moving[kInFlight];
     HWY_UNROLL(8)
     for (std::size_t i = 0; i < kInFlight; ++i) moving[i] = advance<direction>(walk, turns[i]);
     HWY_UNROLL(8)
     for (std::size_t i = 0; i < kInFlight; ++i) {
       if (HWY_LIKELY(moving[i])) continue;
-      if (next == end) {
-        table_is_empty = true;
-        break;
-      }
-      finish<direction>(bundle, walk, turns[i], ends);
-      turns[i] = load(bundle, next, first_k);
-      next += lanes;
+      all_taken = supply.any();
+      if (!all_taken) break;
+      finish<direction>(bundle, walk, turns[i], outcomes);
+      turns[i] = supply.next(bundle, first_k);
     }
   }
   bool any_moves = true;
   while (any_moves) {
     any_moves = false;
-    for (Rays& rays : turns) any_moves |= advance<direction>(walk, rays);
+    for (std::size_t i = 0; i < taken; ++i) any_moves |= advance<direction>(walk, turns[i]);
   }
-  for (const Rays& rays : turns) finish<direction>(bundle, walk, rays, ends);
-  return next;
-}
-
-template <int direction>
-HWY_INLINE void cast(const RayBundle& bundle, const Walk& walk, Vector first_k,
-                     const PacketRange& packets, const RayEnds& ends) {
-  const std::size_t end = packets.end * RayBundle::kPacketRays;
-  std::size_t next = cast_in_turns<direction>(bundle, walk, first_k,
-                                              packets.begin * RayBundle::kPacketRays, end, ends);
-  for (; next < end; next += hn::Lanes(Tag())) {
-    Rays rays = load(bundle, next, first_k);
-    while (advance<direction>(walk, rays)) {
-    }
-    finish<direction>(bundle, walk, rays, ends);
-  }
+  for (std::size_t i = 0; i < taken; ++i) finish<direction>(bundle, walk, turns[i], outcomes);
 }
 
 void CastBundle(const std::uint8_t* field, const std::array<int, 3>& shifts, std::int32_t start,
-                std::int32_t first_k, const RayBundle& bundle, const PacketRange& packets,
-                const RayEnds& ends) {
+                std::int32_t first_k, const RayBundle& bundle, PacketQueue& packets,
+                const RayOutcomes& outcomes) {
   const Tag d;
   const auto axis = static_cast<std::size_t>(bundle.driving_axis);
   const Walk walk{reinterpret_cast<const std::int32_t*>(field), hn::Set(d, start),
@@ -178,9 +182,9 @@ void CastBundle(const std::uint8_t* field, const std::array<int, 3>& shifts, std
                   hn::Set(d, shifts[(axis + 2) % 3])};
   const Vector k = hn::Set(d, first_k);
   if (bundle.direction > 0) {
-    cast<+1>(bundle, walk, k, packets, ends);
+    cast<+1>(bundle, walk, k, Supply(packets), outcomes);
   } else {
-    cast<-1>(bundle, walk, k, packets, ends);
+    cast<-1>(bundle, walk, k, Supply(packets), outcomes);
   }
 }
 
@@ -196,9 +200,9 @@ HWY_EXPORT(CastBundle);
 HWY_EXPORT(TargetName);
 
 void cast_bundle(const std::uint8_t* field, const std::array<int, 3>& shifts, std::int32_t start,
-                 std::int32_t first_k, const RayBundle& bundle, const PacketRange& packets,
-                 const RayEnds& ends) {
-  HWY_DYNAMIC_DISPATCH(CastBundle)(field, shifts, start, first_k, bundle, packets, ends);
+                 std::int32_t first_k, const RayBundle& bundle, PacketQueue& packets,
+                 const RayOutcomes& outcomes) {
+  HWY_DYNAMIC_DISPATCH(CastBundle)(field, shifts, start, first_k, bundle, packets, outcomes);
 }
 
 const char* ray_kernel_target() { return HWY_DYNAMIC_DISPATCH(TargetName)(); }

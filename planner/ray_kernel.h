@@ -1,6 +1,8 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
@@ -27,10 +29,31 @@ struct RayBundle {
   std::size_t packets() const { return group.size(); }
 };
 
-/// Some packets of a bundle, one after the other.
-struct PacketRange {
-  std::size_t begin = 0;
-  std::size_t end = 0;
+/// The packets of a bundle that nobody has cast yet. Threads that cast the same bundle take
+/// portions from one queue, so that none waits for another that was given more.
+class alignas(64) PacketQueue {  // a cache line of its own: it is written to by all threads
+ public:
+  struct Portion {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+  };
+
+  /// Everything is to be cast (again), so many packets at a time.
+  void refill(std::size_t packets, std::size_t portion) {
+    packets_ = packets;
+    portion_ = portion;
+    next_.store(0, std::memory_order_relaxed);
+  }
+  /// The next portion; an empty one when nothing is left.
+  Portion take() {
+    const std::size_t begin = std::min(next_.fetch_add(portion_), packets_);
+    return {begin, std::min(begin + portion_, packets_)};
+  }
+
+ private:
+  std::atomic<std::size_t> next_{0};
+  std::size_t packets_ = 0;
+  std::size_t portion_ = 1;
 };
 
 /// How many rays met what.
@@ -42,7 +65,7 @@ struct RayCounts {
 
 /// Where to write what rays met; what is null is not asked for. Sets of bits hold ray i of the
 /// bundle in bit i % 8 of byte i / 8.
-struct RayEnds {
+struct RayOutcomes {
   RayCounts* counts = nullptr;          ///< by group; added to
   std::int32_t* occupied_at = nullptr;  ///< by ray: offset of the Occupied voxel met, or -1
   std::uint8_t* occupied = nullptr;     ///< bits that are set where a ray met an Occupied voxel;
@@ -50,7 +73,7 @@ struct RayEnds {
   std::uint8_t* unseen = nullptr;
 };
 
-/// Walks rays of a bundle through a FreeSpaceField.
+/// Walks the rays of a bundle, as far as the queue has any, through a FreeSpaceField.
 ///
 ///     byte:  . . 3 2 2 2 3 . .        A ray at k reads its voxel's byte. If that is a jump of d,
 ///            . 3 2 1 1 1 2 3 .        everything nearer than d is Empty and k advances by d;
@@ -67,8 +90,8 @@ struct RayEnds {
 /// @param start    offset of the sensor's voxel
 /// @param first_k  a step up to which all rays are known to meet only Empty, at least 1
 void cast_bundle(const std::uint8_t* field, const std::array<int, 3>& shifts, std::int32_t start,
-                 std::int32_t first_k, const RayBundle& bundle, const PacketRange& packets,
-                 const RayEnds& ends);
+                 std::int32_t first_k, const RayBundle& bundle, PacketQueue& packets,
+                 const RayOutcomes& outcomes);
 
 /// The instruction set cast_bundle uses on this processor, e.g. "AVX2".
 const char* ray_kernel_target();

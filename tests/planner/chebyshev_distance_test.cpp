@@ -29,13 +29,16 @@ std::vector<int> brute_force(const VoxelIndex& cells, const std::vector<VoxelInd
 std::vector<int> by_rows(ChebyshevDistance& distance, const VoxelIndex& cells,
                          const std::vector<VoxelIndex>& obstacles) {
   distance.resize(cells);
-  for (int z = 0; z < cells[2]; ++z) {
-    for (int y = 0; y < cells[1]; ++y) {
-      std::fill_n(distance.row(y, z), cells[0], ChebyshevDistance::kLargest);
-    }
+  std::vector<std::uint8_t> is_obstacle(static_cast<std::size_t>(cells.prod()), 0);
+  const auto at = [&cells](int x, int y, int z) {
+    return static_cast<std::size_t>((z * cells[1] + y) * cells[0] + x);
+  };
+  for (const VoxelIndex& obstacle : obstacles) {
+    is_obstacle[at(obstacle[0], obstacle[1], obstacle[2])] = 1;
   }
-  for (const VoxelIndex& obstacle : obstacles)
-    distance.row(obstacle[1], obstacle[2])[obstacle[0]] = 0;
+  for (int z = 0; z < cells[2]; ++z) {
+    for (int y = 0; y < cells[1]; ++y) distance.fill_row(y, z, &is_obstacle[at(0, y, z)], 0);
+  }
   distance.find();
   std::vector<int> distances;
   for (int z = 0; z < cells[2]; ++z) {
