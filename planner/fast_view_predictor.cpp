@@ -161,8 +161,11 @@ void FastViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
     const std::size_t packets = table.bundle.packets();
     table.queue.refill(packets, threads() == 1 ? packets : kPortion);
   }
+  std::size_t team = 1;  // there can be fewer threads than were asked for
 #pragma omp parallel num_threads(threads()) if (threads() > 1)
   {
+#pragma omp master
+    team = static_cast<std::size_t>(omp_get_num_threads());
     const auto thread = static_cast<std::size_t>(omp_get_thread_num());
     Workspace& workspace = workspaces_[thread];
     workspace.counts.assign(per_orientation.size(), RayCounts());
@@ -181,7 +184,7 @@ void FastViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
   }
   for (std::size_t i = 0; i < per_orientation.size(); ++i) {
     ViewCounts& counts = per_orientation[i];
-    for (const Workspace& workspace : workspaces_) {
+    for (const Workspace& workspace : std::span(workspaces_).first(team)) {
       counts.occupied += workspace.counts[i].occupied;
       counts.occlusion_plane += workspace.counts[i].occlusion_plane;
       counts.unseen += workspace.counts[i].unseen;

@@ -56,6 +56,7 @@ class FastViewPredictor : public RasterViewPredictor {
   void prepare(const VoxelMap& map);
   void cast(Table& table, const VoxelIndex& sensor, Workspace& workspace) const;
   void count_improvements(std::size_t orientation, Workspace& workspace, ViewCounts& counts) const;
+
   std::int64_t rays_per_view_;
   std::array<Table, 6> tables_;                        // by driving axis and sign
   std::vector<std::vector<PacketOfView>> packets_of_;  // by orientation; for f_quality only

@@ -113,7 +113,14 @@ TEST(FastViewPredictor, AgreesOnEveryInstructionSetOfThisProcessor) {
 }
 
 TEST(FastViewPredictor, AgreesWhateverTheNumberOfThreads) {
-  EXPECT_GE(compare(3, 6, 4, 2), 100'000);
+  for (const int threads : {2, 3, 7}) EXPECT_GE(compare(3, 6, 4, threads), 100'000);
+}
+
+// As in a program that has used up its threads: a region within a region has one.
+TEST(FastViewPredictor, AgreesWithFewerThreadsThanAskedFor) {
+#pragma omp parallel num_threads(2)
+#pragma omp single
+  EXPECT_GE(compare(4, 6, 4, 3), 100'000);
 }
 
 TEST(FastViewPredictor, FollowsChangesOfTheMap) {

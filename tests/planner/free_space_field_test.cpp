@@ -87,6 +87,7 @@ TEST(FreeSpaceField, FollowsRandomChangesOfTheMap) {
                                  VoxelIndex(62, 5, 40), VoxelIndex(1, 1, 1)}) {
     VoxelMap map = empty_map({-7, 3, -2}, size);
     FreeSpaceField field(map);
+    FreeSpaceField by_three(map, 3);
     const auto below = [&random](int n) {
       return static_cast<int>(random() % static_cast<unsigned>(n));
     };
@@ -105,7 +106,9 @@ TEST(FreeSpaceField, FollowsRandomChangesOfTheMap) {
         }
       }
       field.update(map, changed);
+      by_three.update(map, changed);
       ASSERT_EQ(count_wrong_bytes(field, map), 0) << "round " << round;
+      ASSERT_EQ(count_wrong_bytes(by_three, map), 0) << "round " << round << ", three threads";
       ++updates;
     }
   }

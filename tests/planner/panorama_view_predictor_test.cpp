@@ -54,13 +54,17 @@ TEST(PanoramaViewPredictor, FitnessIsThePlainOneWithinTheSamplingError) {
     const VoxelMap map = room(random);
     PlainViewPredictor plain(paper_raster(), kVoxelSize, icosahedron_orientations(1), false);
     PanoramaViewPredictor panorama(paper_raster(), kVoxelSize, icosahedron_orientations(1));
+    PanoramaViewPredictor by_two(paper_raster(), kVoxelSize, icosahedron_orientations(1), 2);
     std::vector<ViewCounts> expected(80);
     std::vector<ViewCounts> counts(80);
+    std::vector<ViewCounts> counts_by_two(80);
     const VoxelIndex sensor(6 + static_cast<int>(random() % 40),
                             6 + static_cast<int>(random() % 32),
                             6 + static_cast<int>(random() % 20));
     plain.predict(map, sensor, expected);
     panorama.predict(map, sensor, counts);
+    by_two.predict(map, sensor, counts_by_two);
+    EXPECT_TRUE(std::equal(counts.begin(), counts.end(), counts_by_two.begin()));
     for (std::size_t i = 0; i < counts.size(); ++i) {
       EXPECT_EQ(counts[i].occupied + counts[i].occlusion_plane + counts[i].unseen + counts[i].open,
                 64 * 30);
