@@ -78,16 +78,17 @@ void PlannerProcess::fold(const ReceivedRangeImage& received) {
   present_ = received.image.pose;
   utime_ = received.utime;
   folded_ = true;
+  // Now, while the mapper's commit is under way, and not when it has come.
+  digest_ = builder_.digest();
 }
 
 void PlannerProcess::finish_view(const commit_t& commit) {
   wait_wall_s_ = seconds_between(goal_time_, commit_times_.at(view_));
   views_.push_back(
       view_facts(commit.newly_occupied_voxels, config_.voxel_size_m, commit.min_quality));
-  const std::string digest = builder_.digest();
-  if (digest != commit.map_digest) {
+  if (digest_ != commit.map_digest) {
     stop(StopReason::DigestMismatch, "view " + std::to_string(view_) + ": the mapper's map has " +
-                                         commit.map_digest + ", the planner's " + digest);
+                                         commit.map_digest + ", the planner's " + digest_);
     return;
   }
   if (const auto reason = should_stop(views_, stop_parameters_)) {

@@ -67,6 +67,7 @@ class PlannerProcess : public BusProcess {
   SensorPose goal_;                  // of the present attempt
   std::vector<SensorPose> refused_;  // goals of the present view
   std::vector<ViewFacts> views_;     // committed
+  std::string digest_;               // of the map after the last fold
   Clock::time_point goal_time_;
   double fold_wall_s_ = 0.0;
   double wait_wall_s_ = 0.0;
