@@ -130,18 +130,30 @@ void PanoramaViewPredictor::map_changed(const VoxelMap& map,
 
 // Compiled once more for processors that count bits in one instruction.
 [[gnu::target_clones("popcnt", "default")]] ViewCounts PanoramaViewPredictor::count(
-    const Panorama& panorama, const WeightWord* begin, const WeightWord* end) {
+    const Panorama& panorama, bool any_open, const WeightWord* begin, const WeightWord* end) {
+  const auto population = [](const std::vector<std::uint64_t>& bits, const WeightWord& weight) {
+    return static_cast<std::int64_t>(std::popcount(bits[weight.word] & weight.cells))
+           << weight.plane;
+  };
   ViewCounts counts;
   for (const WeightWord* weight = begin; weight != end; ++weight) {
-    const auto population = [weight](const std::vector<std::uint64_t>& bits) {
-      return static_cast<std::int64_t>(std::popcount(bits[weight->word] & weight->cells))
-             << weight->plane;
-    };
-    counts.occupied += population(panorama.occupied);
-    counts.occlusion_plane += population(panorama.occlusion_plane);
-    counts.unseen += population(panorama.unseen);
+    counts.occupied += population(panorama.occupied, *weight);
+    counts.occlusion_plane += population(panorama.occlusion_plane, *weight);
+  }
+  if (!any_open) return counts;
+  for (const WeightWord* weight = begin; weight != end; ++weight) {
+    counts.unseen += population(panorama.unseen, *weight);
   }
   return counts;
+}
+
+bool PanoramaViewPredictor::any_is_open() const {
+  for (std::size_t i = 0; i < kWords; ++i) {
+    if (~(panorama_.occupied[i] | panorama_.occlusion_plane[i] | panorama_.unseen[i]) != 0) {
+      return true;
+    }
+  }
+  return false;
 }
 
 void PanoramaViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
@@ -155,11 +167,14 @@ void PanoramaViewPredictor::predict(const VoxelMap& map, const VoxelIndex& senso
   {
 #pragma omp for schedule(dynamic)
     for (std::size_t face = 0; face < faces_.size(); ++face) cast_face(face, sensor);
+    const bool any_open = any_is_open();
 #pragma omp for schedule(dynamic, 16)
     for (std::size_t i = 0; i < views_.size(); ++i) {
       ViewCounts& counts = per_orientation[i];
-      counts = count(panorama_, &weights_[views_[i].begin], weights_.data() + views_[i].end);
-      counts.open = rays_per_view_ - counts.occupied - counts.occlusion_plane - counts.unseen;
+      counts =
+          count(panorama_, any_open, &weights_[views_[i].begin], weights_.data() + views_[i].end);
+      std::int64_t& rest = any_open ? counts.open : counts.unseen;
+      rest = rays_per_view_ - counts.occupied - counts.occlusion_plane - counts.unseen;
     }
   }
 }

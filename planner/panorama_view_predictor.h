@@ -19,9 +19,10 @@ namespace nextview {
 ///
 ///     occupied = sum over p of 2^p |met Occupied  AND  cells whose weight has bit p|
 ///
-/// and of these words of 64 cells only the two dozen a view covers are looked at. Counts differ
-/// from PlainViewPredictor's as the direction of a ray is rounded to its cell's, by 1.4 degrees / 2
-/// at most along each side. Of the quality of surfaces nothing is counted.
+/// and of these words of 64 cells only the two dozen a view covers are looked at. Where no ray of
+/// the panorama is open, as in most rooms, what is unseen is what is left. Counts differ from
+/// PlainViewPredictor's as the direction of a ray is rounded to its cell's, by 1.4 degrees / 2 at
+/// most along each side. Of the quality of surfaces nothing is counted.
 class PanoramaViewPredictor : public RasterViewPredictor {
  public:
   static constexpr int kFaceSide = 64;  ///< 90 / 64 = 1.4 degrees a cell; a multiple of 8
@@ -62,7 +63,9 @@ class PanoramaViewPredictor : public RasterViewPredictor {
 
   void cast_face(std::size_t face, const VoxelIndex& sensor);
   void append_view(const RayTable& rays, const Orientation& orientation);
-  static ViewCounts count(const Panorama& panorama, const WeightWord* begin, const WeightWord* end);
+  static ViewCounts count(const Panorama& panorama, bool any_open, const WeightWord* begin,
+                          const WeightWord* end);
+  bool any_is_open() const;
 
   std::int64_t rays_per_view_;
   std::vector<RayBundle> faces_;
