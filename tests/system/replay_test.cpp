@@ -10,8 +10,11 @@
 namespace nextview {
 namespace {
 
-/// What becomes of a logged message: it may be changed, or left out (false).
-using Tamper = std::function<bool(lcm::LogEvent& event, std::vector<std::uint8_t>& bytes)>;
+using Bytes = std::vector<std::uint8_t>;
+
+/// What stands in the place of a logged message: itself, another, nothing, or several.
+using Instead = std::vector<Bytes>;
+using Tamper = std::function<Instead(const lcm::LogEvent& event, const Bytes& bytes)>;
 
 /// The log of a short run, and copies of it that somebody has tampered with.
 class RecordedRun : public testing::Test {
@@ -25,18 +28,17 @@ class RecordedRun : public testing::Test {
     while (const lcm::LogEvent* read = from.readNextEvent()) {
       lcm::LogEvent event = *read;
       const auto* data = static_cast<const std::uint8_t*>(read->data);
-      std::vector<std::uint8_t> bytes(data, data + read->datalen);
-      if (!tamper(event, bytes)) continue;
-      event.data = bytes.data();
-      event.datalen = static_cast<int>(bytes.size());
-      to.writeEvent(&event);
+      for (Bytes& bytes : tamper(*read, Bytes(data, data + read->datalen))) {
+        event.data = bytes.data();
+        event.datalen = static_cast<int>(bytes.size());
+        to.writeEvent(&event);
+      }
     }
     return folder_ / "tampered";
   }
 
   template <class Message>
-  static bool is_view(const lcm::LogEvent& event, const std::vector<std::uint8_t>& bytes,
-                      int view) {
+  static bool is_view(const lcm::LogEvent& event, const Bytes& bytes, int view) {
     if (event.channel != Channel<Message>::name) return false;
     return decode_checked<Message>(bytes).message.value().view == view;
   }
@@ -63,50 +65,43 @@ TEST_F(RecordedRun, AgreesWithThePlannerToo) {
 }
 
 TEST_F(RecordedRun, AgreesWhenMessagesCameTwice) {
-  std::filesystem::create_directories(folder_ / "twice");
-  lcm::LogFile from((folder_ / "run" / "run.lcmlog").string(), "r");
-  {
-    lcm::LogFile to((folder_ / "twice" / "run.lcmlog").string(), "w");
-    while (const lcm::LogEvent* read = from.readNextEvent()) {
-      lcm::LogEvent event = *read;
-      to.writeEvent(&event);
-      to.writeEvent(&event);
-    }
-  }
-  EXPECT_EQ(replay_folder(folder_ / "twice").status, 0);
+  const auto folder = tampered([](const lcm::LogEvent&, const Bytes& bytes) {
+    return Instead{bytes, bytes};
+  });
+  EXPECT_EQ(replay_folder(folder).status, 0);
 }
 
 TEST_F(RecordedRun, ARangeThatWasChangedIsFound) {
-  const auto folder = tampered([](lcm::LogEvent& event, std::vector<std::uint8_t>& bytes) {
+  const auto folder = tampered([](const lcm::LogEvent& event, const Bytes& bytes) {
     if (is_view<range_image_t>(event, bytes, 4)) {
       range_image_t image = *decode_checked<range_image_t>(bytes).message;
       for (float& range_m : image.range_m) range_m *= 0.5F;
-      bytes = encode(image);
+      return Instead{encode(image)};
     }
-    return true;
+    return Instead{bytes};
   });
   expect_disagreement(replay_folder(folder), "view 4: the map rebuilt has digest ");
 }
 
 TEST_F(RecordedRun, AMessageLeftOutIsFound) {
-  const auto without_commit = tampered([](lcm::LogEvent& event, std::vector<std::uint8_t>& bytes) {
-    return !is_view<commit_t>(event, bytes, 3);
+  const auto without_commit = tampered([](const lcm::LogEvent& event, const Bytes& bytes) {
+    return is_view<commit_t>(event, bytes, 3) ? Instead{} : Instead{bytes};
   });
   expect_disagreement(replay_folder(without_commit), "view 3: the log lacks NEXTVIEW_COMMIT");
-  const auto without_image = tampered([](lcm::LogEvent& event, std::vector<std::uint8_t>& bytes) {
-    return !is_view<range_image_t>(event, bytes, 2);
+  const auto without_image = tampered([](const lcm::LogEvent& event, const Bytes& bytes) {
+    return is_view<range_image_t>(event, bytes, 2) ? Instead{} : Instead{bytes};
   });
   expect_disagreement(replay_folder(without_image), "view 2: the log lacks NEXTVIEW_RANGE_IMAGE");
 }
 
 TEST_F(RecordedRun, AGoalThatWasChangedIsFoundByThePlanner) {
-  const auto folder = tampered([](lcm::LogEvent& event, std::vector<std::uint8_t>& bytes) {
+  const auto folder = tampered([](const lcm::LogEvent& event, const Bytes& bytes) {
     if (is_view<goal_t>(event, bytes, 5)) {
       goal_t goal = *decode_checked<goal_t>(bytes).message;
       goal.fitness += 1e-9;
-      bytes = encode(goal);
+      return Instead{encode(goal)};
     }
-    return true;
+    return Instead{bytes};
   });
   EXPECT_EQ(replay_folder(folder).status, 0) << "the map does not depend on it";
   expect_disagreement(replay_folder(folder, {"--planner"}),
@@ -114,34 +109,21 @@ TEST_F(RecordedRun, AGoalThatWasChangedIsFoundByThePlanner) {
 }
 
 TEST_F(RecordedRun, TwoMessagesThatContradictEachOtherAreFound) {
-  std::filesystem::create_directories(folder_ / "twice");
-  lcm::LogFile from((folder_ / "run" / "run.lcmlog").string(), "r");
-  {
-    lcm::LogFile to((folder_ / "twice" / "run.lcmlog").string(), "w");
-    while (const lcm::LogEvent* read = from.readNextEvent()) {
-      lcm::LogEvent event = *read;
-      to.writeEvent(&event);
-      if (event.channel != Channel<commit_t>::name) continue;
-      const auto* data = static_cast<const std::uint8_t*>(read->data);
-      commit_t commit =
-          *decode_checked<commit_t>({data, static_cast<std::size_t>(read->datalen)}).message;
-      commit.mean_quality *= 0.5;
-      std::vector<std::uint8_t> bytes = encode(commit);
-      event.data = bytes.data();
-      to.writeEvent(&event);
-    }
-  }
-  expect_disagreement(replay_folder(folder_ / "twice"), "is there twice, and the two differ");
+  const auto folder = tampered([](const lcm::LogEvent& event, const Bytes& bytes) {
+    if (event.channel != Channel<commit_t>::name) return Instead{bytes};
+    commit_t commit = *decode_checked<commit_t>(bytes).message;
+    commit.mean_quality *= 0.5;
+    return Instead{bytes, encode(commit)};
+  });
+  expect_disagreement(replay_folder(folder), "is there twice, and the two differ");
 }
 
 TEST_F(RecordedRun, AMessageThatCannotBeRightIsLeftOut) {
   bool broken = false;
-  const auto folder = tampered([&](lcm::LogEvent& event, std::vector<std::uint8_t>& bytes) {
-    if (is_view<commit_t>(event, bytes, 2)) {
-      bytes.resize(bytes.size() - 3);
-      broken = true;
-    }
-    return true;
+  const auto folder = tampered([&](const lcm::LogEvent& event, const Bytes& bytes) {
+    if (!is_view<commit_t>(event, bytes, 2)) return Instead{bytes};
+    broken = true;
+    return Instead{Bytes(bytes.begin(), bytes.end() - 3)};
   });
   ASSERT_TRUE(broken);
   const Outcome replay = replay_folder(folder);
@@ -160,8 +142,8 @@ TEST_F(RecordedRun, ALogThatWasCutOffIsFound) {
 }
 
 TEST_F(RecordedRun, ALogWithoutConfigurationIsFound) {
-  const auto folder = tampered([](lcm::LogEvent& event, std::vector<std::uint8_t>&) {
-    return event.channel != Channel<run_config_t>::name;
+  const auto folder = tampered([](const lcm::LogEvent& event, const Bytes& bytes) {
+    return event.channel == Channel<run_config_t>::name ? Instead{} : Instead{bytes};
   });
   expect_disagreement(replay_folder(folder), "no run's configuration is in the log");
 }
