@@ -18,7 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::CappedTag<std::int32_t, LineBundle::kLines>;
 using Vector = hn::Vec<Tag>;
 
-// Lanes of the lines walked, and how to look at the lane before.
+// The stretches in the lanes of one vector.
 struct Lanes {
   Vector position[3];
   Vector slope[3];

@@ -31,14 +31,14 @@ class LineBundle {
   void add(const IntegerLine& line, int first, int last);
   bool full() const { return size_ == kLines; }
 
-  /// The slots of all voxels of all stretches whose labels are below a given one, each at least
-  /// once, and empties the bundle. What repeats, and how often, depends on the instruction set; the
-  /// order in which slots turn up first does not.
-  /// @return as many as slots.size() says; valid until the next call, the caller may write to it
   struct Slots {
     std::uint32_t* begin;
     std::size_t size;
   };
+  /// Empties the bundle, and returns the slots of all voxels of all its stretches whose labels are
+  /// below a given one, each at least once. What repeats, and how often, depends on the instruction
+  /// set; the order in which slots turn up first does not.
+  /// @return valid until the next call; the caller may write to it
   Slots take_slots(const VoxelMap& map, Label below);
 
   /// What the kernel needs of the map: IntegerLine::at in slots.

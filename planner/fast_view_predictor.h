@@ -11,7 +11,7 @@
 
 namespace nextview {
 
-/// The same counts as PlainViewPredictor's, to the last ray, some sixty times sooner: the rays of
+/// The same counts as PlainViewPredictor's, to the last ray, some twenty times sooner: the rays of
 /// all orientations are tabulated once (their lines do not depend on where the sensor is), and walk
 /// through a FreeSpaceField many at a time (ray_kernel.h). The table is sorted by where rays point,
 /// not by whose they are, so that rays of different orientations that go the same way go together.

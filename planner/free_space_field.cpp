@@ -1,6 +1,5 @@
 #include "planner/free_space_field.h"
 
-#include <algorithm>
 #include <bit>
 #include <stdexcept>
 
