@@ -20,7 +20,7 @@ struct ViewRow {
   std::optional<double> surface_coverage;
   double scan_wall_s = 0.0;
   double fold_wall_s = 0.0;  ///< the planner's own map update
-  double wait_wall_s = 0.0;  ///< of the planner, from the goal to the commit
+  double wait_wall_s = 0.0;  ///< of the planner, for the range image and the commit
 
   bool chosen() const { return view > 1; }  ///< view 1 is the scan at the start
 };

@@ -1,7 +1,5 @@
 #include "planner/planner_process.h"
 
-#include <optional>
-
 #include "mapper/mapper_config.h"
 #include "planner/goal_message.h"
 #include "planner/planner_config.h"
@@ -37,10 +35,7 @@ void PlannerProcess::subscribe() {
     auto image = assembler_.add(part);
     if (image) images_.emplace(part.view, std::move(*image));
   });
-  bus_.on<commit_t>([this](const commit_t& commit) {
-    commits_.emplace(commit.view, commit);
-    commit_times_.emplace(commit.view, Clock::now());
-  });
+  bus_.on<commit_t>([this](const commit_t& commit) { commits_.emplace(commit.view, commit); });
 }
 
 bool PlannerProcess::step() {
@@ -67,23 +62,31 @@ bool PlannerProcess::step() {
     finish_view(commit->second);
     return true;
   }
+  if (!planned_ahead_ && view_ < stop_parameters_.max_views) {
+    plan(view_ + 1, 1);
+    planned_ahead_ = true;
+    idle_since_ = Clock::now();
+    return true;
+  }
   return false;
 }
 
 void PlannerProcess::fold(const ReceivedRangeImage& received) {
   const auto start = Clock::now();
+  wait_wall_s_ = seconds_between(idle_since_, start);
   const FoldReport& report = builder_.fold(received.image);
   predictor_->map_changed(builder_.map(), report.changed_slots, report.updated_surfaces);
-  fold_wall_s_ = seconds_between(start, Clock::now());
+  digest_ = builder_.digest();
   present_ = received.image.pose;
   utime_ = received.utime;
+  refused_.clear();
   folded_ = true;
-  // Now, while the mapper's commit is under way, and not when it has come.
-  digest_ = builder_.digest();
+  idle_since_ = Clock::now();
+  fold_wall_s_ = seconds_between(start, idle_since_);
 }
 
 void PlannerProcess::finish_view(const commit_t& commit) {
-  wait_wall_s_ = seconds_between(goal_time_, commit_times_.at(view_));
+  wait_wall_s_ += seconds_between(idle_since_, Clock::now());
   views_.push_back(
       view_facts(commit.newly_occupied_voxels, config_.voxel_size_m, commit.min_quality));
   if (digest_ != commit.map_digest) {
@@ -99,8 +102,9 @@ void PlannerProcess::finish_view(const commit_t& commit) {
   ++view_;
   attempt_ = 1;
   folded_ = false;
-  refused_.clear();
-  decide();
+  if (!planned_ahead_) plan(view_, attempt_);
+  planned_ahead_ = false;
+  publish_decision();
 }
 
 void PlannerProcess::refused(const arrival_t& arrival) {
@@ -113,23 +117,28 @@ void PlannerProcess::refused(const arrival_t& arrival) {
     return;
   }
   ++attempt_;
-  decide();
+  plan(view_, attempt_);
+  publish_decision();
 }
 
-void PlannerProcess::decide() {
+void PlannerProcess::plan(int view, int attempt) {
   const auto start = Clock::now();
-  const std::optional<Decision> decision = decide_next_view(
-      builder_.map(), *predictor_, parameters_, present_, config_.seed, view_, attempt_, refused_);
-  if (!decision) {
+  decision_ = decide_next_view(builder_.map(), *predictor_, parameters_, present_, config_.seed,
+                               view, attempt, refused_);
+  plan_wall_s_ = seconds_between(start, Clock::now());
+}
+
+void PlannerProcess::publish_decision() {
+  if (!decision_) {
     stop(StopReason::NoFeasibleGoal,
          "view " + std::to_string(view_) + ": no position is feasible from the last one");
     return;
   }
-  goal_t goal = goal_message(*decision);
-  goal.plan_wall_s = seconds_between(start, Clock::now());
+  goal_t goal = goal_message(*decision_);
+  goal.plan_wall_s = plan_wall_s_;
   publish_goal(std::move(goal));
 
-  search_t search = search_message(*decision);
+  search_t search = search_message(*decision_);
   search.utime = utime_;
   search.view = view_;
   search.attempt = attempt_;
@@ -143,8 +152,8 @@ void PlannerProcess::publish_goal(goal_t goal) {
   goal.view = view_;
   goal.attempt = attempt_;
   goal_ = {Eigen::Vector3d(goal.position_m), goal.pan_rad, goal.tilt_rad};
-  goal_time_ = Clock::now();
   bus_.publish(std::move(goal));
+  idle_since_ = Clock::now();
 }
 
 void PlannerProcess::stop(StopReason reason, const std::string& detail) {

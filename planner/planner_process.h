@@ -3,6 +3,7 @@
 #include <chrono>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,13 +20,14 @@ namespace nextview {
 /// The planner on the bus: a goal for every view, until the run ends.
 ///
 /// It folds the same range images as the mapper with the mapper's own library and holds its digest
-/// against every commit, so the map it decides on is the map the run has.
+/// against every commit, so the map it decides on is the map the run has. It decides while the
+/// commit is still on its way, and publishes the goal once the commit has come with its own digest.
 class PlannerProcess : public BusProcess {
  public:
   PlannerProcess(Bus& bus, const run_config_t& config);
 
-  /// Takes the run one step on: the first goal; the fold of a range image; after the commit the
-  /// next goal or the end; after a refusal the next attempt.
+  /// Takes the run one step on: the first goal; the fold of a range image; the next decision; after
+  /// the commit its goal or the end; after a refusal the next attempt.
   bool step() override;
   /// Asks for the range image or the commit of the present view. Whoever lacks its own input for
   /// that asks for it in turn, down to the goal.
@@ -39,7 +41,9 @@ class PlannerProcess : public BusProcess {
   void fold(const ReceivedRangeImage& received);
   void finish_view(const commit_t& commit);
   void refused(const arrival_t& arrival);
-  void decide();
+  /// Decides on the present map; the bus hears of it from publish_decision.
+  void plan(int view, int attempt);
+  void publish_decision();
   void publish_goal(goal_t goal);
   void stop(StopReason reason, const std::string& detail);
 
@@ -55,12 +59,13 @@ class PlannerProcess : public BusProcess {
   std::map<int, ReceivedRangeImage> images_;           // by view
   std::map<int, commit_t> commits_;                    // by view
   std::map<std::pair<int, int>, arrival_t> refusals_;  // by view and attempt
-  std::map<int, Clock::time_point> commit_times_;      // by view
 
-  // Where the run is: attempt of view, which is folded or not; 0 before the first goal.
+  // Where the run is: attempt of view, which is folded or not, and with the next view decided on or
+  // not; 0 before the first goal.
   int view_ = 0;
   int attempt_ = 0;
   bool folded_ = false;
+  bool planned_ahead_ = false;
   bool ended_ = false;
   std::int64_t utime_ = 0;
   SensorPose present_;               // of the last range image folded
@@ -68,8 +73,10 @@ class PlannerProcess : public BusProcess {
   std::vector<SensorPose> refused_;  // goals of the present view
   std::vector<ViewFacts> views_;     // committed
   std::string digest_;               // of the map after the last fold
-  Clock::time_point goal_time_;
+  std::optional<Decision> decision_;  // the last one; nothing when no position is feasible
+  Clock::time_point idle_since_;
   double fold_wall_s_ = 0.0;
+  double plan_wall_s_ = 0.0;
   double wait_wall_s_ = 0.0;
 };
 
