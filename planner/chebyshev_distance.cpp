@@ -46,23 +46,19 @@ void lower_along(const Byte* in, Byte* __restrict out, std::size_t by, std::size
   }
 }
 
-// to[i] = at most in[i].
-NEXTVIEW_VECTOR_CLONES
-void lower_to(const Byte* in, Byte* __restrict to, std::size_t size) {
-  for (std::size_t i = 0; i < size; ++i) to[i] = std::min(to[i], in[i]);
-}
-
 }  // namespace
 
 void ChebyshevDistance::resize(const VoxelIndex& cells, int threads) {
-  if (cells == cells_ && (threads > 1) == !downwards_.empty()) return;
+  threads_ = threads;
+  if (cells == cells_) return;
   cells_ = cells;
   rows_ = cells[1];
   layers_ = cells[2];
   stride_ = (static_cast<std::size_t>(cells[0]) + 2 * kMargin - 1) / kMargin * kMargin;
   layer_ = stride_ * static_cast<std::size_t>(rows_);
   distances_.assign((layer_ + kMargin) * static_cast<std::size_t>(layers_) + kMargin, kLargest);
-  downwards_.assign(threads > 1 ? distances_.size() : 0, kLargest);
+  come_up_ = free_layer();
+  come_down_ = free_layer();
 }
 
 void ChebyshevDistance::fill_row(int y, int z, const Byte* bytes, Byte largest_free) {
@@ -70,42 +66,60 @@ void ChebyshevDistance::fill_row(int y, int z, const Byte* bytes, Byte largest_f
   Byte* const distances = &distances_[place(y, z)];
   mark_obstacles(bytes, largest_free, distances, columns);
   std::fill(distances + columns, distances + stride_, kLargest);
-  if (!downwards_.empty()) std::copy_n(distances, stride_, &downwards_[place(y, z)]);
 }
 
 void ChebyshevDistance::find() {
-  if (downwards_.empty()) {
-    go_up(distances_);
-    go_down(distances_);
+  if (threads_ == 1) {
+    Bytes narrowed = free_layer();
+    go_up(0, layers_, narrowed);
+    go_down(0, layers_, narrowed);
     finish_layers(0, layers_);
     return;
   }
-#pragma omp sections
-  {
-#pragma omp section
-    go_up(distances_);
-#pragma omp section
-    go_down(downwards_);
-  }
+  const int middle = std::max(layers_ / 2, 1);
+#pragma omp for schedule(static)
+  for (int half = 0; half < 2; ++half) go_to_middle(half, middle);
+#pragma omp for schedule(static)
+  for (int half = 0; half < 2; ++half) go_from_middle(half, middle);
   const int parts = omp_get_num_threads();
-#pragma omp for
+#pragma omp for schedule(static)
   for (int part = 0; part < parts; ++part) {
-    const int begin_z = layers_ * part / parts;
-    const int end_z = layers_ * (part + 1) / parts;
-    const std::size_t begin = place(0, begin_z);
-    lower_to(&downwards_[begin], &distances_[begin], place(0, end_z) - begin);
-    finish_layers(begin_z, end_z);
+    finish_layers(layers_ * part / parts, layers_ * (part + 1) / parts);
   }
 }
 
-void ChebyshevDistance::go_up(Bytes& distances) const {
+void ChebyshevDistance::go_to_middle(int half, int middle) {
   Bytes narrowed = free_layer();
-  for (int z = 1; z < layers_; ++z) lower_layer(distances, z, z - 1, narrowed);
+  if (half == 0) {
+    go_up(0, middle, narrowed);
+    std::copy_n(&distances_[place(0, middle - 1)], layer_, &come_up_[stride_]);
+  } else if (middle < layers_) {
+    go_down(middle, layers_, narrowed);
+    std::copy_n(&distances_[place(0, middle)], layer_, &come_down_[stride_]);
+  }
 }
 
-void ChebyshevDistance::go_down(Bytes& distances) const {
+void ChebyshevDistance::go_from_middle(int half, int middle) {
   Bytes narrowed = free_layer();
-  for (int z = layers_ - 2; z >= 0; --z) lower_layer(distances, z, z + 1, narrowed);
+  if (half == 0) {
+    lower_layer(middle - 1, &come_down_[stride_], narrowed);
+    go_down(0, middle, narrowed);
+  } else if (middle < layers_) {
+    lower_layer(middle, &come_up_[stride_], narrowed);
+    go_up(middle, layers_, narrowed);
+  }
+}
+
+void ChebyshevDistance::go_up(int begin_z, int end_z, Bytes& narrowed) {
+  for (int z = begin_z + 1; z < end_z; ++z) {
+    lower_layer(z, &distances_[place(0, z - 1)], narrowed);
+  }
+}
+
+void ChebyshevDistance::go_down(int begin_z, int end_z, Bytes& narrowed) {
+  for (int z = end_z - 2; z >= begin_z; --z) {
+    lower_layer(z, &distances_[place(0, z + 1)], narrowed);
+  }
 }
 
 void ChebyshevDistance::finish_layers(int begin_z, int end_z) {
@@ -116,10 +130,10 @@ void ChebyshevDistance::finish_layers(int begin_z, int end_z) {
   for (int z = begin_z; z < end_z; ++z) lower_along_rows(z, a, b);
 }
 
-void ChebyshevDistance::lower_layer(Bytes& distances, int z, int from_z, Bytes& narrowed) const {
+void ChebyshevDistance::lower_layer(int z, const Byte* from_layer, Bytes& narrowed) {
   Byte* const from = &narrowed[stride_];
-  narrow(&distances[place(0, from_z)], from, layer_);
-  lower(from - stride_, from, from + stride_, &distances[place(0, z)], layer_);
+  narrow(from_layer, from, layer_);
+  lower(from - stride_, from, from + stride_, &distances_[place(0, z)], layer_);
 }
 
 // A row of all layers at a time: a row that has just been written would be waited for.

@@ -172,7 +172,8 @@ void FastViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
     // Each begins at a table of its own: only those that are done early share one.
     const std::size_t first = thread * tables_.size() / workspaces_.size();
     for (std::size_t i = 0; i < tables_.size(); ++i) {
-      cast(tables_[(first + i) % tables_.size()], sensor, workspace);
+      Table& table = tables_[(first + i) % tables_.size()];
+      if (!table.queue.empty()) cast(table, sensor, workspace);
     }
     if (counts_quality()) {
 #pragma omp barrier

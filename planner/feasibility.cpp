@@ -104,21 +104,29 @@ FeasibleSpace::FeasibleSpace(const VoxelMap& map, const FeasibilityParameters& p
   body_ = squared_voxels(parameters.body_radius_m, voxel_size_m);
   departure_ = squared_voxels(parameters.departure_m, voxel_size_m);
   const int limit = std::max(clear_, body_);
-  reach_ = static_cast<int>(std::sqrt(static_cast<double>(limit)));
-  for (int k = -reach_; k <= reach_; ++k) {
-    for (int j = -reach_; j <= reach_; ++j) {
-      for (int i = -reach_; i <= reach_; ++i) {
-        const VoxelIndex step(i, j, k);
-        if (step.squaredNorm() < limit) offsets_.push_back({step, step.squaredNorm()});
+  reach_ = 0;
+  while ((reach_ + 1) * (reach_ + 1) < limit) ++reach_;
+  make_offsets(limit);
+  at_present_ = surroundings(present_, nullptr);
+}
+
+void FeasibleSpace::make_offsets(int limit) {
+  for (int shell = 0; shell <= reach_; ++shell) {
+    for (int k = -shell; k <= shell; ++k) {
+      for (int j = -shell; j <= shell; ++j) {
+        const bool inside = std::max(std::abs(k), std::abs(j)) < shell;
+        for (int i = -shell; i <= shell; i += inside ? 2 * shell : 1) {
+          const int squared_length = i * i + j * j + k * k;
+          if (squared_length < limit) offsets_.push_back({{i, j, k}, squared_length, shell});
+        }
       }
     }
   }
-  std::sort(offsets_.begin(), offsets_.end(),
-            [](const Offset& a, const Offset& b) { return a.squared_length < b.squared_length; });
-  for (int axis = 0; axis < 3; ++axis) {
-    for (const int sign : {-1, 1}) {
-      for (const Offset& offset : offsets_) {
-        const int before = (offset.step + sign * VoxelIndex::Unit(axis)).squaredNorm();
+  for (const Offset& offset : offsets_) {
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const int sign : {-1, 1}) {
+        // Squared length as seen from the voxel the step came from.
+        const int before = offset.squared_length + 2 * sign * offset.step[axis] + 1;
         const bool enters_clearance = offset.squared_length < clear_ && before >= clear_;
         const bool enters_body = offset.squared_length < body_ && before >= body_;
         if (enters_clearance || enters_body) entered_by(axis, sign).push_back(offset);
@@ -147,54 +155,59 @@ bool FeasibleSpace::is_refused(const Eigen::Vector3d& position_m) const {
 }
 
 bool FeasibleSpace::path_clear(const Eigen::Vector3d& position_m) {
-  const int at_present = surroundings(present_, nullptr).nearest_occupied;
+  SegmentWalk walk(map_.grid(), present_m_, position_m);
+  // Most positions that cannot be reached lie in what is unknown themselves.
+  if (!walk.at_end() && map_.label(walk.last()) != Label::Empty) return false;
+  const int at_present = at_present_.nearest_occupied;
   bool got_clear = at_present == clear_;
   VoxelIndex last = present_;
-  SegmentWalk walk(map_.grid(), present_m_, position_m);
+  bool last_is_clear = is_clear(at_present_);
   while (!walk.at_end()) {
     walk.step();
     const VoxelIndex& voxel = walk.voxel();
     if (map_.label(voxel) != Label::Empty) return false;
-    const Surroundings& near = surroundings(voxel, &last);
+    const Surroundings near = surroundings(voxel, last_is_clear ? &last : nullptr);
     if (near.unknown_near) return false;
     if (near.nearest_occupied < (got_clear ? clear_ : at_present)) return false;
     got_clear = got_clear || near.nearest_occupied == clear_;
     last = voxel;
+    last_is_clear = is_clear(near);
   }
   return true;
 }
 
-const FeasibleSpace::Surroundings& FeasibleSpace::surroundings(const VoxelIndex& voxel,
-                                                               const VoxelIndex* neighbour) {
+FeasibleSpace::Surroundings FeasibleSpace::surroundings(const VoxelIndex& voxel,
+                                                        const VoxelIndex* clear_neighbour) {
+  const int free_distance = free_distance_ ? free_distance_(voxel) : 0;
+  if (free_distance > reach_) return {clear_, false};
   const auto [entry, inserted] = known_.try_emplace(map_.slot(voxel));
   Surroundings& result = entry->second;
   if (!inserted) return result;
-  if (free_distance_ && free_distance_(voxel) > reach_) {
-    result = {clear_, false};
-    return result;
+  if (clear_neighbour != nullptr) {
+    const VoxelIndex step = voxel - *clear_neighbour;
+    int axis = 0;
+    step.cwiseAbs().maxCoeff(&axis);
+    result = look_around(voxel, entered_by(axis, step[axis]), free_distance);
+    if (is_clear(result)) return result;
   }
-  if (neighbour != nullptr) {
-    const auto known = known_.find(map_.slot(*neighbour));
-    if (known != known_.end() && is_clear(known->second)) {
-      const VoxelIndex step = voxel - *neighbour;
-      int axis = 0;
-      step.cwiseAbs().maxCoeff(&axis);
-      result = look_around(voxel, entered_by(axis, step[axis]));
-      if (is_clear(result)) return result;
-    }
-  }
-  result = look_around(voxel, offsets_);
+  result = look_around(voxel, offsets_, free_distance);
   return result;
 }
 
 FeasibleSpace::Surroundings FeasibleSpace::look_around(const VoxelIndex& voxel,
-                                                       const std::vector<Offset>& offsets) const {
+                                                       const std::vector<Offset>& offsets,
+                                                       int free_distance) const {
   Surroundings result{clear_, false};
   const VoxelIndex corner = VoxelIndex::Constant(reach_);
   const bool all_inside = map_.contains(voxel - corner) && map_.contains(voxel + corner);
   const auto labels = map_.labels();
-  for (const auto& [step, squared_length] : offsets) {  // nearest first
-    if (squared_length >= std::max(body_, result.nearest_occupied)) break;
+  // Everything in the shells nearer than the free distance is Empty.
+  const auto first = std::ranges::lower_bound(offsets, free_distance, {}, &Offset::shell);
+  for (auto offset = first; offset != offsets.end(); ++offset) {
+    const auto& [step, squared_length, shell] = *offset;
+    const int matters = std::max(body_, result.nearest_occupied);  // what is nearer than that
+    if (shell * shell >= matters) break;
+    if (squared_length >= matters) continue;
     const VoxelIndex neighbour = voxel + step;
     const Label label = all_inside ? labels[map_.slot(neighbour)] : map_.label(neighbour);
     if (label == Label::Empty) continue;

@@ -4,6 +4,7 @@
 #include <array>
 #include <functional>
 #include <limits>
+#include <memory_resource>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -35,6 +36,7 @@ class SegmentWalk {
   SegmentWalk(const VoxelGrid& grid, const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m);
 
   const VoxelIndex& voxel() const { return voxel_; }
+  const VoxelIndex& last() const { return last_; }
   bool at_end() const { return voxel_ == last_; }
   /// To the next voxel; not to be called at the end.
   void step();
@@ -106,8 +108,10 @@ class FeasibleSpace {
   struct Offset {
     VoxelIndex step;
     int squared_length;
+    int shell;  // the largest of |di|, |dj|, |dk|
   };
 
+  void make_offsets(int limit);
   bool within_limits(const Eigen::Vector3d& position_m) const;
   bool is_refused(const Eigen::Vector3d& position_m) const;
   bool path_clear(const Eigen::Vector3d& position_m);
@@ -116,8 +120,9 @@ class FeasibleSpace {
   }
   // A neighbour that shares a face and is clear saves most of the work: only what the step from
   // there brings near for the first time is looked at.
-  const Surroundings& surroundings(const VoxelIndex& voxel, const VoxelIndex* neighbour);
-  Surroundings look_around(const VoxelIndex& voxel, const std::vector<Offset>& offsets) const;
+  Surroundings surroundings(const VoxelIndex& voxel, const VoxelIndex* clear_neighbour);
+  Surroundings look_around(const VoxelIndex& voxel, const std::vector<Offset>& offsets,
+                           int free_distance) const;
   std::vector<Offset>& entered_by(int axis, int sign) {
     return entered_[static_cast<std::size_t>(2 * axis + (sign > 0 ? 1 : 0))];
   }
@@ -132,9 +137,11 @@ class FeasibleSpace {
   int departure_;  // and for the departure
   int reach_;      // the largest of |di|, |dj|, |dk| that is looked at
   FreeDistance free_distance_;
-  std::vector<Offset> offsets_;  // of all voxels nearer than clearance or body radius, by length
+  std::vector<Offset> offsets_;  // of all voxels nearer than clearance or body radius, by shell
   std::array<std::vector<Offset>, 6> entered_;  // those a step along an axis brings near, by step
-  std::unordered_map<std::size_t, Surroundings> known_;  // by slot, as far as asked for
+  std::pmr::monotonic_buffer_resource memory_;  // of known_, which only grows
+  std::pmr::unordered_map<std::size_t, Surroundings> known_{&memory_};  // by slot, where looked
+  Surroundings at_present_;
 };
 
 }  // namespace nextview

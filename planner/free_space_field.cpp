@@ -11,9 +11,23 @@ namespace {
 
 using Byte = std::uint8_t;
 
-// What ends a walk stays what it is: its distance is 0.
+/// Rows are worked on in whole vectors of so many bytes: what is left of a row behind its last
+/// vector would take as long as all before it.
+constexpr int kVector = 32;
+
+int round_down(int size) { return size / kVector * kVector; }
+int round_up(int size) { return round_down(size + kVector - 1); }
+
+// What ends a walk stays what it is: its distance is 0. A row that stays as it was is not written
+// to, so that it need not be fetched again by other cores.
 NEXTVIEW_VECTOR_CLONES
 void take_distances(const Byte* distances, Byte* __restrict bytes, std::size_t size) {
+  Byte difference = 0;
+  for (std::size_t i = 0; i < size; ++i) {
+    difference =
+        static_cast<Byte>(difference | ((bytes[i] & FreeSpaceField::kMaxJump) ^ distances[i]));
+  }
+  if (difference == 0) return;
   for (std::size_t i = 0; i < size; ++i) {
     bytes[i] = static_cast<Byte>((bytes[i] & ~FreeSpaceField::kMaxJump) | distances[i]);
   }
@@ -40,6 +54,7 @@ FreeSpaceField::FreeSpaceField(const VoxelMap& map, int threads)
     : window_(map.window()),
       cells_(map.window().size + VoxelIndex::Constant(2)),
       threads_(threads) {
+  cells_[0] = round_up(cells_[0]);
   int bits = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     shift_[axis] = bits;
@@ -78,8 +93,7 @@ void FreeSpaceField::take_labels(const VoxelMap& map, std::span<const std::uint3
                                  Box& changed) {
   Box mine{cells_, VoxelIndex::Zero()};
   const auto labels = map.labels();
-  // In portions, so that whoever is awake first begins.
-#pragma omp for schedule(dynamic, 1024) nowait
+#pragma omp for schedule(static) nowait
   for (std::size_t i = 0; i < changed_slots.size(); ++i) {
     const std::uint32_t slot = changed_slots[i];
     const VoxelIndex index = map.index_of_slot(slot);
@@ -106,8 +120,11 @@ void FreeSpaceField::find_distances(const Box& changed) {
   // A distance depends on cells up to kMaxJump away, so `fresh` is where distances may be different
   // and `seen` what they depend on.
   const auto grown = [this](const Box& box) {
-    return Box{(box.min - VoxelIndex::Constant(kMaxJump - 1)).cwiseMax(0),
+    Box result{(box.min - VoxelIndex::Constant(kMaxJump - 1)).cwiseMax(0),
                (box.end + VoxelIndex::Constant(kMaxJump - 1)).cwiseMin(cells_)};
+    result.min[0] = round_down(result.min[0]);
+    result.end[0] = round_up(result.end[0]);
+    return result;
   };
   const Box fresh = grown(changed);
   const Box seen = grown(fresh);
@@ -115,14 +132,14 @@ void FreeSpaceField::find_distances(const Box& changed) {
   const auto length = static_cast<std::size_t>(fresh.end[0] - fresh.min[0]);
 #pragma omp single
   distance_.resize(seen.end - seen.min, threads_);
-#pragma omp for
+#pragma omp for schedule(static)
   for (int z = seen.min[2]; z < seen.end[2]; ++z) {
     for (int y = seen.min[1]; y < seen.end[1]; ++y) {
       distance_.fill_row(y - seen.min[1], z - seen.min[2], row(y, z) + seen.min[0], kMaxJump);
     }
   }
   distance_.find();
-#pragma omp for
+#pragma omp for schedule(static)
   for (int z = fresh.min[2]; z < fresh.end[2]; ++z) {
     for (int y = fresh.min[1]; y < fresh.end[1]; ++y) {
       const Byte* const distances = distance_.row(y - seen.min[1], z - seen.min[2]);

@@ -80,7 +80,7 @@ class FreeSpaceField {
   void find_distances(const Box& changed);
 
   MapWindow window_;
-  VoxelIndex cells_;  ///< window and layer
+  VoxelIndex cells_;  ///< window and layer; along x some more that are outside
   std::array<int, 3> shift_;
   std::vector<std::uint8_t> bytes_;
   ChebyshevDistance distance_;  ///< workspace

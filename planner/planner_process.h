@@ -68,11 +68,11 @@ class PlannerProcess : public BusProcess {
   bool planned_ahead_ = false;
   bool ended_ = false;
   std::int64_t utime_ = 0;
-  SensorPose present_;               // of the last range image folded
-  SensorPose goal_;                  // of the present attempt
-  std::vector<SensorPose> refused_;  // goals of the present view
-  std::vector<ViewFacts> views_;     // committed
-  std::string digest_;               // of the map after the last fold
+  SensorPose present_;                // of the last range image folded
+  SensorPose goal_;                   // of the present attempt
+  std::vector<SensorPose> refused_;   // goals of the present view
+  std::vector<ViewFacts> views_;      // committed
+  std::string digest_;                // of the map after the last fold
   std::optional<Decision> decision_;  // the last one; nothing when no position is feasible
   Clock::time_point idle_since_;
   double fold_wall_s_ = 0.0;

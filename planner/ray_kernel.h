@@ -44,6 +44,9 @@ class alignas(64) PacketQueue {  // a cache line of its own: it is written to by
     portion_ = portion;
     next_.store(0, std::memory_order_relaxed);
   }
+  /// Whether nothing is left. Costs less than taking an empty portion: no other thread is
+  /// disturbed.
+  bool empty() const { return next_.load(std::memory_order_relaxed) >= packets_; }
   /// The next portion; an empty one when nothing is left.
   Portion take() {
     const std::size_t begin = std::min(next_.fetch_add(portion_), packets_);
