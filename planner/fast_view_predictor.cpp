@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <exception>
 #include <stdexcept>
 
 #include "sensor_sim/sensor_pose.h"
@@ -79,11 +80,12 @@ std::array<std::vector<Packet>, 6> packets_of(const RayTable& rays, const Orient
 
 void append(const Packet& packet, RayBundle& bundle) {
   bundle.group.push_back(packet.orientation);
+  RayBundle::Packet& columns = bundle.packets.emplace_back();
   for (std::size_t i = 0; i < kPacketRays; ++i) {
     const IntegerLine& line = packet.rays[i].line;
-    bundle.slope1.push_back(line.slope[(line.driving_axis + 1) % 3]);
-    bundle.slope2.push_back(line.slope[(line.driving_axis + 2) % 3]);
-    bundle.reach.push_back(i < packet.count ? line.steps : -1);
+    columns.slope1[i] = line.slope[(line.driving_axis + 1) % 3];
+    columns.slope2[i] = line.slope[(line.driving_axis + 2) % 3];
+    columns.reach[i] = i < packet.count ? line.steps : -1;
   }
 }
 
@@ -119,7 +121,7 @@ void FastViewPredictor::make_tables(const PredictionRaster& raster, double voxel
       append(packet, table.bundle);
       if (!counts_quality()) continue;
       packets_of_[static_cast<std::size_t>(packet.orientation)].push_back(
-          {i, table.bundle.packets() - 1});
+          {i, table.bundle.packets.size() - 1});
       for (const TabulatedRay& ray : packet.rays) table.directions.push_back(ray.direction);
     }
     if (counts_quality()) table.occupied_at.resize(table.bundle.rays());
@@ -154,52 +156,104 @@ void FastViewPredictor::map_changed(const VoxelMap& map,
 
 void FastViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
                                 std::span<ViewCounts> per_orientation) {
-  check_arguments(map, sensor, per_orientation.size());
-  prepare(map);
-  std::fill(per_orientation.begin(), per_orientation.end(), ViewCounts());
-  for (Table& table : tables_) {
-    const std::size_t packets = table.bundle.packets();
-    table.queue.refill(packets, threads() == 1 ? packets : kPortion);
+  predict_all(map, {&sensor, 1}, per_orientation);
+}
+
+void FastViewPredictor::predict_all(const VoxelMap& map, std::span<const VoxelIndex> sensors,
+                                    std::span<ViewCounts> counts,
+                                    const std::function<void()>& meanwhile) {
+  if (sensors.empty()) {
+    meanwhile();
+    return;
   }
+  const std::size_t views = orientations().size();
+  if (counts.size() % sensors.size() != 0) check_arguments(map, sensors[0], counts.size());
+  for (const VoxelIndex& sensor : sensors) {
+    check_arguments(map, sensor, counts.size() / sensors.size());
+  }
+  prepare(map);
+  std::fill(counts.begin(), counts.end(), ViewCounts());
+  // The tables remember what the rays of one sensor met.
+  const std::size_t together = counts_quality() ? 1 : sensors.size();
+  for (std::size_t i = 0; i < sensors.size(); i += together) {
+    predict_together(
+        sensors.subspan(i, together), counts.subspan(i * views, together * views),
+        i == 0 ? meanwhile : [] {});
+  }
+}
+
+void FastViewPredictor::fill_queues(std::size_t jobs) {
+  if (queues_.size() < jobs) queues_ = std::vector<PacketQueue>(jobs);
+  for (std::size_t thread = 0; thread < workspaces_.size(); ++thread) {
+    const std::size_t first = first_job(thread, jobs);
+    const std::size_t end = first_job(thread + 1, jobs);
+    for (std::size_t job = first; job < end; ++job) {
+      const std::size_t packets = tables_[job % tables_.size()].bundle.packets.size();
+      // The last third of a thread's jobs is what others will help with.
+      const bool shared = 3 * (job - first) >= 2 * (end - first);
+      const std::size_t portion = threads() == 1 ? packets : shared ? kPortion : (packets + 1) / 2;
+      queues_[job].refill(packets, portion);
+    }
+  }
+}
+
+void FastViewPredictor::predict_together(std::span<const VoxelIndex> sensors,
+                                         std::span<ViewCounts> counts,
+                                         const std::function<void()>& meanwhile) {
+  const std::size_t views = orientations().size();
+  const std::size_t jobs = sensors.size() * tables_.size();
+  fill_queues(jobs);
   std::size_t team = 1;  // there can be fewer threads than were asked for
+  std::exception_ptr thrown;
 #pragma omp parallel num_threads(threads()) if (threads() > 1)
   {
 #pragma omp master
-    team = static_cast<std::size_t>(omp_get_num_threads());
+    {
+      team = static_cast<std::size_t>(omp_get_num_threads());
+      try {
+        meanwhile();
+      } catch (...) {
+        thrown = std::current_exception();
+      }
+    }
     const auto thread = static_cast<std::size_t>(omp_get_thread_num());
     Workspace& workspace = workspaces_[thread];
-    workspace.counts.assign(per_orientation.size(), RayCounts());
-    // Each begins at a table of its own: only those that are done early share one.
-    const std::size_t first = thread * tables_.size() / workspaces_.size();
-    for (std::size_t i = 0; i < tables_.size(); ++i) {
-      Table& table = tables_[(first + i) % tables_.size()];
-      if (!table.queue.empty()) cast(table, sensor, workspace);
+    workspace.counts.assign(counts.size(), RayCounts());
+    const std::size_t first = first_job(thread, jobs);
+    for (std::size_t i = 0; i < jobs; ++i) {
+      const std::size_t job = (first + i) % jobs;
+      const std::size_t sensor = job / tables_.size();
+      if (queues_[job].empty()) continue;
+      cast(tables_[job % tables_.size()], queues_[job], sensors[sensor],
+           &workspace.counts[sensor * views]);
     }
     if (counts_quality()) {
 #pragma omp barrier
 #pragma omp for schedule(dynamic)
-      for (std::size_t i = 0; i < per_orientation.size(); ++i) {
-        count_improvements(i, workspace, per_orientation[i]);
+      for (std::size_t i = 0; i < counts.size(); ++i) {
+        count_improvements(i, workspace, counts[i]);
       }
     }
   }
-  for (std::size_t i = 0; i < per_orientation.size(); ++i) {
-    ViewCounts& counts = per_orientation[i];
+  if (thrown) std::rethrow_exception(thrown);
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    ViewCounts& view = counts[i];
     for (const Workspace& workspace : std::span(workspaces_).first(team)) {
-      counts.occupied += workspace.counts[i].occupied;
-      counts.occlusion_plane += workspace.counts[i].occlusion_plane;
-      counts.unseen += workspace.counts[i].unseen;
+      view.occupied += workspace.counts[i].occupied;
+      view.occlusion_plane += workspace.counts[i].occlusion_plane;
+      view.unseen += workspace.counts[i].unseen;
     }
-    counts.open = rays_per_view_ - counts.occupied - counts.occlusion_plane - counts.unseen;
+    view.open = rays_per_view_ - view.occupied - view.occlusion_plane - view.unseen;
   }
 }
 
-void FastViewPredictor::cast(Table& table, const VoxelIndex& sensor, Workspace& workspace) const {
+void FastViewPredictor::cast(Table& table, PacketQueue& queue, const VoxelIndex& sensor,
+                             RayCounts* counts) const {
   RayOutcomes outcomes;
-  outcomes.counts = workspace.counts.data();
+  outcomes.counts = counts;
   if (counts_quality()) outcomes.occupied_at = table.occupied_at.data();
   cast_bundle(field_->bytes(), field_->shifts(), static_cast<std::int32_t>(field_->offset(sensor)),
-              field_->steps_from(sensor), table.bundle, table.queue, outcomes);
+              field_->steps_from(sensor), table.bundle, queue, outcomes);
 }
 
 void FastViewPredictor::count_improvements(std::size_t orientation, Workspace& workspace,

@@ -15,8 +15,8 @@ namespace nextview {
 /// all orientations are tabulated once (their lines do not depend on where the sensor is), and walk
 /// through a FreeSpaceField many at a time (ray_kernel.h). The table is sorted by where rays point,
 /// not by whose they are, so that rays of different orientations that go the same way go together.
-/// Threads share the tables between them and count each for itself; sums of integers do not depend
-/// on how.
+/// Threads share the tables between them, of several sensors at once where there are, and count each
+/// for itself; sums of integers do not depend on how.
 class FastViewPredictor : public RasterViewPredictor {
  public:
   /// @param threads how many may work at a time, at least 1
@@ -27,6 +27,9 @@ class FastViewPredictor : public RasterViewPredictor {
 
   void predict(const VoxelMap& map, const VoxelIndex& sensor,
                std::span<ViewCounts> per_orientation) override;
+  void predict_all(
+      const VoxelMap& map, std::span<const VoxelIndex> sensors, std::span<ViewCounts> counts,
+      const std::function<void()>& meanwhile = [] {}) override;
   void map_changed(const VoxelMap& map, std::span<const std::uint32_t> changed_slots,
                    std::span<const std::uint32_t> updated_surfaces) override;
   int free_distance(const VoxelIndex& voxel) const override {
@@ -39,7 +42,6 @@ class FastViewPredictor : public RasterViewPredictor {
     RayBundle bundle;                            // its groups are orientations
     std::vector<QuantisedDirection> directions;  // world frame, by ray; for f_quality only
     std::vector<std::int32_t> occupied_at;       // where rays ended; for f_quality only
-    PacketQueue queue;
   };
   struct PacketOfView {
     std::size_t table;
@@ -47,14 +49,22 @@ class FastViewPredictor : public RasterViewPredictor {
   };
   // What one thread works with.
   struct Workspace {
-    std::vector<RayCounts> counts;  // by orientation
+    std::vector<RayCounts> counts;  // by sensor, then by orientation
     ImprovementCount improvement;
   };
+  // All tables from one sensor after the other are the jobs of a prediction. Threads share them as
+  // evenly, each beginning with jobs of its own.
+  std::size_t first_job(std::size_t thread, std::size_t jobs) const {
+    return thread * jobs / workspaces_.size();
+  }
 
   int threads() const { return static_cast<int>(workspaces_.size()); }
   void make_tables(const PredictionRaster& raster, double voxel_size_m);
   void prepare(const VoxelMap& map);
-  void cast(Table& table, const VoxelIndex& sensor, Workspace& workspace) const;
+  void predict_together(std::span<const VoxelIndex> sensors, std::span<ViewCounts> counts,
+                        const std::function<void()>& meanwhile);
+  void fill_queues(std::size_t jobs);
+  void cast(Table& table, PacketQueue& queue, const VoxelIndex& sensor, RayCounts* counts) const;
   void count_improvements(std::size_t orientation, Workspace& workspace, ViewCounts& counts) const;
 
   std::int64_t rays_per_view_;
@@ -63,6 +73,7 @@ class FastViewPredictor : public RasterViewPredictor {
   std::optional<FreeSpaceField> field_;                // of the map of the last call
   SurfaceTable surfaces_;
   std::vector<Workspace> workspaces_;  // by thread
+  std::vector<PacketQueue> queues_;    // by job
 };
 
 }  // namespace nextview

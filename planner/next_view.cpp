@@ -1,6 +1,8 @@
 #include "planner/next_view.h"
 
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <unordered_map>
@@ -37,23 +39,37 @@ class PositionFitness {
         predictor_(predictor),
         use_quality_(use_quality),
         present_(map.grid().voxel_of(present.position_m)),
-        present_direction_(viewing_direction(present.pan_rad, present.tilt_rad)),
-        counts_(predictor.orientations().size()) {}
+        present_direction_(viewing_direction(present.pan_rad, present.tilt_rad)) {}
 
-  const BestView& at(const Eigen::Vector3d& position_m) {
-    const VoxelIndex voxel = map_.grid().voxel_of(position_m);
-    const auto [entry, inserted] = known_.try_emplace(map_.slot(voxel));
-    if (inserted) entry->second = best_view(voxel);
-    return entry->second;
+  /// Works out the fitness of positions, as far as it is not known, all together.
+  void learn(
+      std::span<const Eigen::Vector3d> positions_m,
+      const std::function<void()>& meanwhile = [] {}) {
+    unknown_.clear();
+    for (const Eigen::Vector3d& position_m : positions_m) {
+      const VoxelIndex voxel = map_.grid().voxel_of(position_m);
+      if (known_.try_emplace(map_.slot(voxel)).second) unknown_.push_back(voxel);
+    }
+    const std::size_t views = predictor_.orientations().size();
+    counts_.resize(unknown_.size() * views);
+    predictor_.predict_all(map_, unknown_, counts_, meanwhile);
+    for (std::size_t i = 0; i < unknown_.size(); ++i) {
+      known_[map_.slot(unknown_[i])] =
+          best_view(unknown_[i], std::span(counts_).subspan(i * views, views));
+    }
+  }
+
+  /// At a position that has been learnt.
+  const BestView& at(const Eigen::Vector3d& position_m) const {
+    return known_.at(map_.slot(map_.grid().voxel_of(position_m)));
   }
 
  private:
-  BestView best_view(const VoxelIndex& voxel) {
-    predictor_.predict(map_, voxel, counts_);
+  BestView best_view(const VoxelIndex& voxel, std::span<const ViewCounts> counts) const {
     BestView best;
-    for (std::size_t i = 0; i < counts_.size(); ++i) {
+    for (std::size_t i = 0; i < counts.size(); ++i) {
       if (voxel == present_ && just_scanned(predictor_.orientations()[i])) continue;
-      const Fitness candidate = fitness(counts_[i], use_quality_);
+      const Fitness candidate = fitness(counts[i], use_quality_);
       if (!best.any || candidate.value > best.fitness.value) best = {i, candidate, true};
     }
     return best;
@@ -69,6 +85,7 @@ class PositionFitness {
   bool use_quality_;
   VoxelIndex present_;
   Eigen::Vector3d present_direction_;
+  std::vector<VoxelIndex> unknown_;  // and their counts, of one call
   std::vector<ViewCounts> counts_;
   std::unordered_map<std::size_t, BestView> known_;  // by slot
 };
@@ -91,6 +108,30 @@ std::array<Eigen::Vector3d, 4> initial_vertices(const Eigen::Vector3d& present_m
     }
   }
   return vertices;
+}
+
+/// Where the search has led, which has found a feasible position.
+Decision decision_of(const SimplexResult& search, const PositionFitness& fitness_at,
+                     const SensorPose& present, const std::vector<Orientation>& orientations) {
+  Decision decision;
+  const BestView& chosen = fitness_at.at(search.best.position);
+  const Orientation& orientation = orientations[chosen.orientation];
+  decision.pose = {search.best.position, orientation.pan_rad, orientation.tilt_rad};
+  decision.waypoints_m = {present.position_m, search.best.position};
+  decision.fitness = chosen.fitness;
+  decision.iterations = search.iterations;
+  decision.evaluations = static_cast<int>(search.tried.size());
+  for (const SimplexTrial& trial : search.tried) {
+    TriedPosition tried{trial.position, 0.0, 0.0, -1.0, trial.move};
+    if (trial.value != kInfeasible) {
+      const BestView& best = fitness_at.at(trial.position);
+      tried.pan_rad = orientations[best.orientation].pan_rad;
+      tried.tilt_rad = orientations[best.orientation].tilt_rad;
+      tried.fitness = best.fitness.value;
+    }
+    decision.tried.push_back(tried);
+  }
+  return decision;
 }
 
 }  // namespace
@@ -120,37 +161,32 @@ std::optional<Decision> decide_next_view(const VoxelMap& map, ViewPredictor& pre
   FeasibleSpace space(map, parameters.feasibility, present.position_m, refused,
                       [&](const VoxelIndex& voxel) { return predictor.free_distance(voxel); });
   PositionFitness fitness_at(map, predictor, parameters.use_quality, present);
-  const auto value = [&](const Eigen::Vector3d& position_m) {
-    if (!space.reachable(position_m)) return kInfeasible;
-    const BestView& best = fitness_at.at(position_m);
-    return best.any ? best.fitness.value : kInfeasible;
+  const auto values = [&](std::span<const Eigen::Vector3d> positions_m) {
+    std::vector<Eigen::Vector3d> reachable_m;
+    std::vector<double> result(positions_m.size(), kInfeasible);
+    for (std::size_t i = 0; i < positions_m.size(); ++i) {
+      if (!space.reachable(positions_m[i])) continue;
+      reachable_m.push_back(positions_m[i]);
+      result[i] = 0.0;
+    }
+    fitness_at.learn(reachable_m);
+    for (std::size_t i = 0; i < positions_m.size(); ++i) {
+      if (result[i] == kInfeasible) continue;
+      const BestView& best = fitness_at.at(positions_m[i]);
+      result[i] = best.any ? best.fitness.value : kInfeasible;
+    }
+    return result;
   };
 
   RandomStream random(seed, view, attempt, RandomPurpose::InitialSimplex);
-  const SimplexResult search =
-      maximise_by_simplex(initial_vertices(present.position_m, parameters, space, random), value,
-                          parameters.fitness_tolerance, parameters.max_evaluations);
+  std::array<Eigen::Vector3d, 4> vertices;
+  fitness_at.learn({&present.position_m, 1}, [&] {
+    vertices = initial_vertices(present.position_m, parameters, space, random);
+  });
+  const SimplexResult search = maximise_by_simplex(vertices, values, parameters.fitness_tolerance,
+                                                   parameters.max_evaluations);
   if (search.best.value == kInfeasible) return std::nullopt;
-
-  Decision decision;
-  const BestView& chosen = fitness_at.at(search.best.position);
-  const Orientation& orientation = predictor.orientations()[chosen.orientation];
-  decision.pose = {search.best.position, orientation.pan_rad, orientation.tilt_rad};
-  decision.waypoints_m = {present.position_m, search.best.position};
-  decision.fitness = chosen.fitness;
-  decision.iterations = search.iterations;
-  decision.evaluations = static_cast<int>(search.tried.size());
-  for (const SimplexTrial& trial : search.tried) {
-    TriedPosition tried{trial.position, 0.0, 0.0, -1.0, trial.move};
-    if (trial.value != kInfeasible) {
-      const BestView& best = fitness_at.at(trial.position);
-      tried.pan_rad = predictor.orientations()[best.orientation].pan_rad;
-      tried.tilt_rad = predictor.orientations()[best.orientation].tilt_rad;
-      tried.fitness = best.fitness.value;
-    }
-    decision.tried.push_back(tried);
-  }
-  return decision;
+  return decision_of(search, fitness_at, present, predictor.orientations());
 }
 
 }  // namespace nextview

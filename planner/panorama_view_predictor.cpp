@@ -60,9 +60,7 @@ std::vector<RayBundle> cube_faces(double reach) {
     bundle.driving_axis = face / 2;
     bundle.direction = face % 2 == 0 ? 1 : -1;
     constexpr auto kRays = static_cast<std::size_t>(kSide * kSide);
-    bundle.slope1.resize(kRays);
-    bundle.slope2.resize(kRays);
-    bundle.reach.resize(kRays);
+    bundle.packets.resize(kRays / RayBundle::kPacketRays);
     bundle.group.resize(kRays / RayBundle::kPacketRays);
     for (int row = 0; row < kSide; ++row) {
       for (int column = 0; column < kSide; ++column) {
@@ -71,9 +69,11 @@ std::vector<RayBundle> cube_faces(double reach) {
         const IntegerLine line = line_along(VoxelIndex::Zero(), cell_direction(cell), reach);
         // Rounding can make a cell at the very rim a tie between two driving axes, but no other
         // axis ever advances more than the face's.
-        bundle.slope1[ray] = line.slope[(bundle.driving_axis + 1) % 3];
-        bundle.slope2[ray] = line.slope[(bundle.driving_axis + 2) % 3];
-        bundle.reach[ray] = line.steps;
+        RayBundle::Packet& packet = bundle.packets[ray / RayBundle::kPacketRays];
+        const std::size_t place = ray % RayBundle::kPacketRays;
+        packet.slope1[place] = line.slope[(bundle.driving_axis + 1) % 3];
+        packet.slope2[place] = line.slope[(bundle.driving_axis + 2) % 3];
+        packet.reach[place] = line.steps;
       }
     }
   }
@@ -182,7 +182,7 @@ void PanoramaViewPredictor::predict(const VoxelMap& map, const VoxelIndex& senso
 void PanoramaViewPredictor::cast_face(std::size_t face, const VoxelIndex& sensor) {
   const std::size_t word = face * kSide * kSide / 64;
   PacketQueue packets;
-  packets.refill(faces_[face].packets(), faces_[face].packets());
+  packets.refill(faces_[face].packets.size(), faces_[face].packets.size());
   RayOutcomes outcomes;
   outcomes.occupied = reinterpret_cast<std::uint8_t*>(&panorama_.occupied[word]);
   outcomes.occlusion_plane = reinterpret_cast<std::uint8_t*>(&panorama_.occlusion_plane[word]);

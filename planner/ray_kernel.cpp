@@ -35,10 +35,15 @@ struct Rays {
   Vector read;  // of the field: a byte and three that do not matter
 };
 
+// Part of a packet's column, from a ray of the bundle on.
+HWY_INLINE Vector part_of(const RayBundle::Column& column, std::size_t first) {
+  return hn::Load(Tag(), &column[first % RayBundle::kPacketRays]);
+}
+
 HWY_INLINE Rays load(const RayBundle& bundle, std::size_t first, Vector first_k) {
-  const Tag d;
-  return {first, hn::LoadU(d, &bundle.slope1[first]), hn::LoadU(d, &bundle.slope2[first]), first_k,
-          hn::Zero(d)};
+  const RayBundle::Packet& packet = bundle.packets[first / RayBundle::kPacketRays];
+  return {first, part_of(packet.slope1, first), part_of(packet.slope2, first), first_k,
+          hn::Zero(Tag())};
 }
 
 // SSE has no shifts by lane; elsewhere they cost less than a shift of all lanes by a register.
@@ -92,15 +97,15 @@ template <int direction>
 HWY_INLINE void finish(const RayBundle& bundle, const Walk& walk, const Rays& rays,
                        const RayOutcomes& outcomes) {
   const Tag d;
-  const auto too_far = hn::Gt(rays.k, hn::LoadU(d, &bundle.reach[rays.first]));
+  const std::size_t packet = rays.first / RayBundle::kPacketRays;
+  const auto too_far = hn::Gt(rays.k, part_of(bundle.packets[packet].reach, rays.first));
   const Vector kind = hn::IfThenElse(too_far, hn::Set(d, FreeSpaceField::kOutside),
                                      hn::And(rays.read, hn::Set(d, 255)));
   const auto occupied = hn::Eq(kind, hn::Set(d, FreeSpaceField::kOccupied));
   const auto plane = hn::Eq(kind, hn::Set(d, FreeSpaceField::kOcclusionPlane));
   const auto unseen = hn::Eq(kind, hn::Set(d, FreeSpaceField::kUnseen));
   if (outcomes.counts != nullptr) {
-    const std::int32_t group = bundle.group[rays.first / RayBundle::kPacketRays];
-    RayCounts& counts = outcomes.counts[group];
+    RayCounts& counts = outcomes.counts[bundle.group[packet]];
     counts.occupied += static_cast<std::int32_t>(hn::CountTrue(d, occupied));
     counts.occlusion_plane += static_cast<std::int32_t>(hn::CountTrue(d, plane));
     counts.unseen += static_cast<std::int32_t>(hn::CountTrue(d, unseen));

@@ -9,24 +9,28 @@
 
 namespace nextview {
 
-/// Rays that drive along the same axis in the same direction, as columns of a table. Their lines
-/// are those of IntegerLine without a start, so one table serves every sensor position.
+/// Rays that drive along the same axis in the same direction. Their lines are those of IntegerLine
+/// without a start, so one bundle serves every sensor position.
 ///
-/// Rays stand in packets of kPacketRays; all rays of a packet are counted for the same group, for
-/// instance a view. Neighbouring packets should point in about the same direction, so that what one
-/// has read of the field is still near when the next comes.
+/// Rays stand in packets of kPacketRays, in columns of a cache line each; all rays of a packet are
+/// counted for the same group, for instance a view. Neighbouring packets should point in about the
+/// same direction, so that what one has read of the field is still near when the next comes.
 struct RayBundle {
-  static constexpr int kPacketRays = 16;  ///< a multiple of the rays any vector holds
+  static constexpr std::size_t kPacketRays = 16;  ///< a multiple of the rays any vector holds
+
+  using Column = std::array<std::int32_t, kPacketRays>;
+  struct alignas(64) Packet {
+    Column slope1;  ///< IntegerLine::slope[(driving_axis + 1) % 3]
+    Column slope2;  ///< and [(driving_axis + 2) % 3]
+    Column reach;   ///< steps until the sensor's range limit; -1: not a ray
+  };
 
   int driving_axis = 0;
-  int direction = 1;                 ///< +1 or -1 along it
-  std::vector<std::int32_t> slope1;  ///< per ray, IntegerLine::slope[(driving_axis + 1) % 3]
-  std::vector<std::int32_t> slope2;  ///< and [(driving_axis + 2) % 3]
-  std::vector<std::int32_t> reach;   ///< steps until the sensor's range limit; -1: not a ray
-  std::vector<std::int32_t> group;   ///< per packet
+  int direction = 1;  ///< +1 or -1 along it
+  std::vector<Packet> packets;
+  std::vector<std::int32_t> group;  ///< of each packet
 
-  std::size_t rays() const { return slope1.size(); }
-  std::size_t packets() const { return group.size(); }
+  std::size_t rays() const { return packets.size() * kPacketRays; }
 };
 
 /// The packets of a bundle that nobody has cast yet. Threads that cast the same bundle take

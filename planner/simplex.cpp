@@ -13,15 +13,17 @@ constexpr double kInfeasible = -std::numeric_limits<double>::infinity();
 
 class Simplex {
  public:
-  Simplex(const std::function<double(const Eigen::Vector3d&)>& value, SimplexResult& result)
-      : value_(value), result_(result) {}
+  Simplex(const ValuesOfPositions& values, SimplexResult& result)
+      : values_(values), result_(result) {}
 
-  SimplexTrial try_at(const Eigen::Vector3d& position, SimplexMove move) {
-    result_.tried.push_back({position, value_(position), move});
-    return result_.tried.back();
+  /// Tries the first vertices, in their order.
+  void begin(std::span<const Eigen::Vector3d> positions) {
+    const std::vector<double> values = values_(positions);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      const SimplexMove move = i == 0 ? SimplexMove::FirstVertex : SimplexMove::InitialVertex;
+      vertices_.push_back(note({positions[i], values.at(i), move}));
+    }
   }
-
-  void add(const SimplexTrial& vertex) { vertices_.push_back(vertex); }
 
   /// Best first; of equal vertices the older one.
   void sort() {
@@ -62,14 +64,28 @@ class Simplex {
       vertices_.back() = contracted;
       return;
     }
-    for (std::size_t i = 1; i < vertices_.size(); ++i) {
-      vertices_[i] =
-          try_at(0.5 * (best().position + vertices_[i].position), SimplexMove::Contraction3D);
-    }
+    contract_towards_best();
   }
 
  private:
-  const std::function<double(const Eigen::Vector3d&)>& value_;
+  SimplexTrial note(const SimplexTrial& trial) { return result_.tried.emplace_back(trial); }
+
+  SimplexTrial try_at(const Eigen::Vector3d& position, SimplexMove move) {
+    return note({position, values_({&position, 1}).at(0), move});
+  }
+
+  void contract_towards_best() {
+    std::array<Eigen::Vector3d, 3> positions;
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      positions[i] = 0.5 * (best().position + vertices_[i + 1].position);
+    }
+    const std::vector<double> values = values_(positions);
+    for (std::size_t i = 0; i < positions.size(); ++i) {
+      vertices_[i + 1] = note({positions[i], values.at(i), SimplexMove::Contraction3D});
+    }
+  }
+
+  const ValuesOfPositions& values_;
   SimplexResult& result_;
   std::vector<SimplexTrial> vertices_;
 };
@@ -77,16 +93,13 @@ class Simplex {
 }  // namespace
 
 SimplexResult maximise_by_simplex(const std::array<Eigen::Vector3d, 4>& vertices,
-                                  const std::function<double(const Eigen::Vector3d&)>& value,
-                                  double tolerance, int max_evaluations) {
+                                  const ValuesOfPositions& values, double tolerance,
+                                  int max_evaluations) {
   if (max_evaluations < 4) throw std::invalid_argument("a simplex needs at least 4 evaluations");
   if (!(tolerance >= 0.0)) throw std::invalid_argument("a simplex's tolerance must be 0 or more");
   SimplexResult result;
-  Simplex simplex(value, result);
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const SimplexMove move = i == 0 ? SimplexMove::FirstVertex : SimplexMove::InitialVertex;
-    simplex.add(simplex.try_at(vertices[i], move));
-  }
+  Simplex simplex(values, result);
+  simplex.begin(vertices);
   simplex.sort();
   while (!simplex.flat(tolerance) &&
          result.tried.size() < static_cast<std::size_t>(max_evaluations)) {

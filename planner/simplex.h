@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace nextview {
@@ -31,6 +32,10 @@ struct SimplexResult {
   std::vector<SimplexTrial> tried;  ///< every evaluation, in order; the four vertices first
 };
 
+/// The values of positions, in their order. The simplex needs them all before it goes on, so they
+/// can be worked out together.
+using ValuesOfPositions = std::function<std::vector<double>(std::span<const Eigen::Vector3d>)>;
+
 /// Hill climbing with a simplex of four vertices in three dimensions, after Nelder and Mead (P21):
 /// the worst vertex is reflected in the face of the others; a new best is expanded to twice the
 /// distance; a vertex that would still be the worst is contracted half way to the face (1-D), and
@@ -45,7 +50,7 @@ struct SimplexResult {
 /// by no more than its own 5 evaluations). A tolerance of 0 stops only by the budget.
 /// @throws std::invalid_argument when max_evaluations < 4 or the tolerance is negative or NaN
 SimplexResult maximise_by_simplex(const std::array<Eigen::Vector3d, 4>& vertices,
-                                  const std::function<double(const Eigen::Vector3d&)>& value,
-                                  double tolerance, int max_evaluations);
+                                  const ValuesOfPositions& values, double tolerance,
+                                  int max_evaluations);
 
 }  // namespace nextview

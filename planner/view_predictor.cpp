@@ -35,6 +35,16 @@ std::uint16_t predicted_quality(std::int32_t cosine) {
   return static_cast<std::uint16_t>(std::min<std::int64_t>(rounded, SurfaceVoxel::kQualityUnit));
 }
 
+void ViewPredictor::predict_all(const VoxelMap& map, std::span<const VoxelIndex> sensors,
+                                std::span<ViewCounts> counts,
+                                const std::function<void()>& meanwhile) {
+  meanwhile();
+  const std::size_t views = orientations().size();
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    predict(map, sensors[i], counts.subspan(i * views, views));
+  }
+}
+
 RasterViewPredictor::RasterViewPredictor(const PredictionRaster& raster, double voxel_size_m,
                                          std::vector<Orientation> orientations, bool counts_quality)
     : ViewPredictor(std::move(orientations), counts_quality), voxel_size_m_(voxel_size_m) {

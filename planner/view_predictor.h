@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <cstdlib>
+#include <functional>
 #include <span>
 #include <vector>
 
@@ -63,6 +64,14 @@ class ViewPredictor {
   ///         of counts or the map's voxel size is not what the predictor was made for
   virtual void predict(const VoxelMap& map, const VoxelIndex& sensor,
                        std::span<ViewCounts> per_orientation) = 0;
+
+  /// The same for several sensors: the counts of all orientations for the first, then for the
+  /// second, and so on. With threads that takes less time than one after the other.
+  /// @param meanwhile what this thread has to do before it takes part, such as finding out where to
+  ///        predict next
+  virtual void predict_all(
+      const VoxelMap& map, std::span<const VoxelIndex> sensors, std::span<ViewCounts> counts,
+      const std::function<void()>& meanwhile = [] {});
 
   /// To be called after every change of the map, with the slots whose label is different and those
   /// whose surface data is (FoldReport has both); a predictor may keep what it derives from them up

@@ -4,8 +4,10 @@
 #include <hwy/targets.h>
 
 #include <algorithm>
+#include <new>
 #include <numbers>
 #include <random>
+#include <thread>
 #include <vector>
 
 #include "sensor_sim/sensor_pose.h"
@@ -121,6 +123,68 @@ TEST(FastViewPredictor, AgreesWithFewerThreadsThanAskedFor) {
 #pragma omp parallel num_threads(2)
 #pragma omp single
   EXPECT_GE(compare(4, 6, 4, 3), 100'000);
+}
+
+TEST(FastViewPredictor, PredictsFromSeveralSensorsAsFromOneAfterTheOther) {
+  std::mt19937 random(5);
+  const VoxelMap map = random_map(random, VoxelIndex::Zero(), {30, 25, 20});
+  const PredictionRaster raster = small_raster(15, 9, std::numbers::pi / 3.0, 30.0);
+  const std::vector<VoxelIndex> sensors = {{15, 12, 10}, {0, 0, 0}, {29, 3, 19}, {15, 12, 11}};
+  const std::size_t views = directions().size();
+  for (const bool quality : {false, true}) {
+    for (const int threads : {1, 2, 3}) {
+      FastViewPredictor fast(raster, kVoxelSize, directions(), quality, threads);
+      std::vector<ViewCounts> counts(sensors.size() * views);
+      int done_meanwhile = 0;
+      const auto caller = std::this_thread::get_id();
+      fast.predict_all(map, sensors, counts, [&] {
+        EXPECT_EQ(std::this_thread::get_id(), caller);
+        ++done_meanwhile;
+      });
+      EXPECT_EQ(done_meanwhile, 1);
+      for (std::size_t i = 0; i < sensors.size(); ++i) {
+        std::vector<ViewCounts> alone(views);
+        fast.predict(map, sensors[i], alone);
+        EXPECT_TRUE(std::equal(alone.begin(), alone.end(), &counts[i * views]))
+            << "sensor " << i << ", " << threads << " threads";
+      }
+    }
+  }
+}
+
+TEST(FastViewPredictor, LetsOutWhatIsThrownMeanwhileAndGoesOnWorking) {
+  std::mt19937 random(6);
+  const VoxelMap map = random_map(random, VoxelIndex::Zero(), {30, 25, 20});
+  const PredictionRaster raster = small_raster(15, 9, std::numbers::pi / 3.0, 30.0);
+  const VoxelIndex sensor(15, 12, 10);
+  for (const int threads : {1, 2}) {
+    FastViewPredictor fast(raster, kVoxelSize, directions(), true, threads);
+    std::vector<ViewCounts> expected(directions().size());
+    fast.predict(map, sensor, expected);
+    std::vector<ViewCounts> counts(directions().size());
+    EXPECT_THROW(fast.predict_all(map, {&sensor, 1}, counts, [] { throw std::bad_alloc(); }),
+                 std::bad_alloc);
+    fast.predict(map, sensor, counts);
+    EXPECT_EQ(counts, expected);
+  }
+}
+
+TEST(FastViewPredictor, WantsRoomForEveryViewOfEverySensor) {
+  std::mt19937 random(7);
+  const VoxelMap map = random_map(random, VoxelIndex::Zero(), {30, 25, 20});
+  const PredictionRaster raster = small_raster(15, 9, std::numbers::pi / 3.0, 30.0);
+  FastViewPredictor fast(raster, kVoxelSize, directions(), false, 1);
+  const std::vector<VoxelIndex> sensors = {{15, 12, 10}, {3, 4, 5}};
+  std::vector<ViewCounts> counts(2 * directions().size());
+  EXPECT_NO_THROW(fast.predict_all(map, sensors, counts));
+  EXPECT_NO_THROW(fast.predict_all(map, {}, {}));
+  counts.pop_back();
+  EXPECT_THROW(fast.predict_all(map, sensors, counts), std::invalid_argument);
+  counts.resize(directions().size());
+  EXPECT_THROW(fast.predict_all(map, sensors, counts), std::invalid_argument);
+  const std::vector<VoxelIndex> outside = {{15, 12, 10}, {30, 4, 5}};
+  counts.resize(2 * directions().size());
+  EXPECT_THROW(fast.predict_all(map, outside, counts), std::invalid_argument);
 }
 
 TEST(FastViewPredictor, FollowsChangesOfTheMap) {

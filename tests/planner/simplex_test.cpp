@@ -18,6 +18,19 @@ constexpr double kInfeasible = -std::numeric_limits<double>::infinity();
 const std::array<Vector3d, 4> kCorner = {Vector3d::Zero(), Vector3d::UnitX(), Vector3d::UnitY(),
                                          Vector3d::UnitZ()};
 
+// Of a function that answers one position at a time.
+SimplexResult maximise_by_simplex(const std::array<Vector3d, 4>& vertices,
+                                  const std::function<double(const Vector3d&)>& value,
+                                  double tolerance, int max_evaluations) {
+  const auto values = [&value](std::span<const Vector3d> positions) {
+    std::vector<double> result;
+    for (const Vector3d& position : positions) result.push_back(value(position));
+    return result;
+  };
+  return nextview::maximise_by_simplex(vertices, ValuesOfPositions(values), tolerance,
+                                       max_evaluations);
+}
+
 TEST(Simplex, ClimbsToAKnownTop) {
   const Vector3d top(1.7, -0.4, 2.2);
   const auto result = maximise_by_simplex(
