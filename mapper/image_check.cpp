@@ -1,8 +1,12 @@
 #include "mapper/image_check.h"
 
 #include <cmath>
+#include <cstdint>
+#include <span>
 #include <stdexcept>
 #include <string>
+
+#include "sensor_sim/vector_clones.h"
 
 namespace nextview {
 
@@ -42,6 +46,16 @@ void check_rotation(const Eigen::Matrix3d& rotation) {
   }
 }
 
+NEXTVIEW_VECTOR_CLONES
+bool any_negative(std::span<const float> ranges_m) {
+  std::int32_t negative = 0;
+#pragma omp simd reduction(| : negative)
+  for (std::size_t n = 0; n < ranges_m.size(); ++n) {
+    negative |= static_cast<std::int32_t>(ranges_m[n] < 0.0f);
+  }
+  return negative != 0;
+}
+
 }  // namespace
 
 void check_range_image(const RangeImage& image, const VoxelGrid& grid, const MapWindow& window) {
@@ -56,10 +70,7 @@ void check_range_image(const RangeImage& image, const VoxelGrid& grid, const Map
   if (!(limits.min_m >= 0.0 && limits.min_m < limits.max_m && std::isfinite(limits.max_m))) {
     refuse("its range limits");
   }
-  int negative = 0;
-#pragma omp simd reduction(| : negative)
-  for (std::size_t n = 0; n < image.range_m.size(); ++n) negative |= image.range_m[n] < 0.0f;
-  if (negative) refuse("a negative range");
+  if (any_negative(image.range_m)) refuse("a negative range");
 
   for (int axis = 0; axis < 3; ++axis) {
     const double x = (image.position_m[axis] - grid.origin_m[axis]) / grid.voxel_size_m;

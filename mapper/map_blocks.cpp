@@ -1,42 +1,50 @@
 #include "mapper/map_blocks.h"
 
+#include "sensor_sim/vector_clones.h"
+
 namespace nextview {
 
-MapBlocks::MapBlocks(const VoxelMap& map) : window_(map.window()), shift_(map.shifts()) {
+MapBlocks::MapBlocks(const VoxelMap& map) : window_(map.window()) {
   std::uint32_t stride = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const int a = static_cast<int>(axis);
     const int begin = window_.min[a];
     const int end = begin + window_.size[a];
-    mask_[axis] = static_cast<std::size_t>(map.sides()[axis] - 1);
     first_[a] = begin >> 3;
-    counts_[axis] = static_cast<std::uint32_t>(((end - 1) >> 3) - first_[a] + 1);
-    number_[axis].resize(mask_[axis] + 1);
-    for (int index = begin; index < end; ++index) {
-      const std::uint32_t block = static_cast<std::uint32_t>((index >> 3) - first_[a]);
-      number_[axis][static_cast<std::size_t>(index) & mask_[axis]] = block * stride;
-    }
-    stride *= counts_[axis];
+    const auto count = static_cast<std::uint32_t>(((end - 1) >> 3) - first_[a] + 1);
+    axes_[axis] = {static_cast<std::uint32_t>(map.shifts()[axis]),
+                   static_cast<std::uint32_t>(map.sides()[axis] - 1),
+                   static_cast<std::uint32_t>(begin), count, stride};
+    stride *= count;
+  }
+}
+
+NEXTVIEW_VECTOR_CLONES
+void MapBlocks::blocks_of(std::span<const std::uint32_t> slots, std::uint32_t* blocks) const {
+  const auto axes = axes_;
+#pragma omp simd
+  for (std::size_t n = 0; n < slots.size(); ++n) {
+    const std::uint32_t slot = slots[n];
+    blocks[n] = axes[0].part_of(slot) + axes[1].part_of(slot) + axes[2].part_of(slot);
   }
 }
 
 VoxelIndex MapBlocks::coordinate(std::uint32_t block) const {
-  const std::uint32_t x = block % counts_[0];
-  const std::uint32_t y = block / counts_[0] % counts_[1];
-  const std::uint32_t z = block / counts_[0] / counts_[1];
+  const std::uint32_t x = block % axes_[0].count;
+  const std::uint32_t y = block / axes_[0].count % axes_[1].count;
+  const std::uint32_t z = block / axes_[0].count / axes_[1].count;
   return first_ + VoxelIndex(static_cast<int>(x), static_cast<int>(y), static_cast<int>(z));
 }
 
 std::array<std::uint32_t, 6> MapBlocks::neighbours(std::uint32_t block) const {
   std::array<std::uint32_t, 6> numbers;
   std::uint32_t along = block;
-  std::uint32_t stride = 1;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    const std::uint32_t place = along % counts_[axis];
-    numbers[2 * axis] = place > 0 ? block - stride : size();
-    numbers[2 * axis + 1] = place + 1 < counts_[axis] ? block + stride : size();
-    along /= counts_[axis];
-    stride *= counts_[axis];
+  for (std::size_t n = 0; n < 3; ++n) {
+    const Axis& axis = axes_[n];
+    const std::uint32_t place = along % axis.count;
+    numbers[2 * n] = place > 0 ? block - axis.stride : size();
+    numbers[2 * n + 1] = place + 1 < axis.count ? block + axis.stride : size();
+    along /= axis.count;
   }
   return numbers;
 }
@@ -49,17 +57,11 @@ std::array<MapBlocks::AxisSlots, 3> MapBlocks::slots(std::uint32_t block) const 
     for (std::size_t e = 0; e < slots[axis].size(); ++e) {
       const int index = corner[a] + static_cast<int>(e);
       const bool inside = index >= window_.min[a] && index < window_.min[a] + window_.size[a];
-      slots[axis][e] =
-          inside ? (static_cast<std::size_t>(index) & mask_[axis]) << shift_[axis] : kOutside;
+      const std::size_t part = static_cast<std::uint32_t>(index) & axes_[axis].mask;
+      slots[axis][e] = inside ? part << axes_[axis].shift : kOutside;
     }
   }
   return slots;
-}
-
-std::size_t MapBlocks::memory_bytes() const {
-  std::size_t bytes = 0;
-  for (const auto& axis : number_) bytes += axis.capacity() * sizeof(std::uint32_t);
-  return bytes;
 }
 
 }  // namespace nextview

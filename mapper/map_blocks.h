@@ -2,7 +2,7 @@
 
 #include <array>
 #include <cstdint>
-#include <vector>
+#include <span>
 
 #include "mapper/voxel_map.h"
 
@@ -20,7 +20,7 @@ class MapBlocks {
 
   explicit MapBlocks(const VoxelMap& map);
 
-  std::uint32_t size() const { return counts_[0] * counts_[1] * counts_[2]; }
+  std::uint32_t size() const { return axes_[0].count * axes_[1].count * axes_[2].count; }
   /// Absolute coordinate of a block.
   VoxelIndex coordinate(std::uint32_t block) const;
   /// The blocks at the sides of a block, -x, +x, -y, +y, -z, +z; size() where the window has none.
@@ -28,24 +28,34 @@ class MapBlocks {
 
   /// The number of the block a slot of the window lies in.
   std::uint32_t block_of(std::size_t slot) const {
-    return number_[0][slot & mask_[0]] + number_[1][slot >> shift_[1] & mask_[1]] +
-           number_[2][slot >> shift_[2]];
+    const auto s = static_cast<std::uint32_t>(slot);
+    return axes_[0].part_of(s) + axes_[1].part_of(s) + axes_[2].part_of(s);
   }
+  /// The same for many slots, several at a time; room for as many blocks.
+  void blocks_of(std::span<const std::uint32_t> slots, std::uint32_t* blocks) const;
 
   /// The slots of a block, by axis: entry e of an axis stands for index 8 b + e. The slot of a
   /// voxel is the sum over the axes; kOutside outside the window.
   using AxisSlots = std::array<std::size_t, kSide>;
   std::array<AxisSlots, 3> slots(std::uint32_t block) const;
 
-  std::size_t memory_bytes() const;
-
  private:
+  // How an axis' part of a slot becomes its part of a block's number.
+  struct Axis {
+    std::uint32_t shift, mask;  ///< of the slot
+    std::uint32_t begin;        ///< the window's first index; only its lowest bits matter
+    std::uint32_t count;        ///< of blocks
+    std::uint32_t stride;       ///< between their numbers
+
+    std::uint32_t part_of(std::uint32_t slot) const {
+      const std::uint32_t in_window = ((slot >> shift & mask) - begin) & mask;
+      return (in_window + begin % kSide) / kSide * stride;
+    }
+  };
+
   MapWindow window_;
-  std::array<std::size_t, 3> mask_;
-  std::array<int, 3> shift_;
   VoxelIndex first_;  ///< absolute coordinate of block 0
-  std::array<std::uint32_t, 3> counts_;
-  std::array<std::vector<std::uint32_t>, 3> number_;  ///< per axis, by the slot's part of that axis
+  std::array<Axis, 3> axes_;
 };
 
 }  // namespace nextview

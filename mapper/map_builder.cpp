@@ -120,8 +120,8 @@ std::string MapBuilder::digest() { return state_->digest.digest(state_->map, sta
 
 std::size_t MapBuilder::memory_bytes() const {
   const State& s = *state_;
-  return sizeof(State) + s.map.memory_bytes() + s.blocks.memory_bytes() + s.census.memory_bytes() +
-         s.quality.memory_bytes() + s.digest.memory_bytes() + s.ray_ends.memory_bytes() +
+  return sizeof(State) + s.map.memory_bytes() + s.census.memory_bytes() + s.quality.memory_bytes() +
+         s.digest.memory_bytes() + s.ray_ends.memory_bytes() +
          (s.report.changed_slots.capacity() + s.report.updated_surfaces.capacity()) *
              sizeof(std::uint32_t);
 }

@@ -67,11 +67,15 @@ MapCensus::MapCensus(const VoxelMap& map, const MapBlocks& blocks)
 }
 
 void MapCensus::note_changes(const MapBlocks& blocks, std::span<const std::uint32_t> slots) {
-  for (const std::uint32_t slot : slots) {
-    const std::uint32_t block = blocks.block_of(slot);
-    if (listed_[block]) continue;
-    listed_[block] = 1;
-    to_look_.push_back(block);
+  std::array<std::uint32_t, 256> portion;
+  for (std::size_t begin = 0; begin < slots.size(); begin += portion.size()) {
+    const auto these = slots.subspan(begin, std::min(portion.size(), slots.size() - begin));
+    blocks.blocks_of(these, portion.data());
+    for (const std::uint32_t block : std::span(portion).first(these.size())) {
+      if (listed_[block]) continue;
+      listed_[block] = 1;
+      to_look_.push_back(block);
+    }
   }
 }
 

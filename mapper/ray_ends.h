@@ -56,13 +56,10 @@ class RayEnds {
   void add_run(const PixelRun& run, const MapWindow& window);
   RayEnd& end_of(const PixelRun& run, const VoxelIndex& voxel, bool is_surface);
   std::uint32_t number_of(const VoxelIndex& voxel, bool is_surface);
-  void make_table(std::size_t places);
-  void grow_table();
-
-  struct TableEntry {
-    std::uint64_t key;
-    std::uint32_t end;
-  };
+  /// The place of the table where an end is or, if it is not, belongs.
+  std::size_t place_of(const VoxelIndex& voxel, bool is_surface) const;
+  /// To this many places at least.
+  void grow_table(std::size_t places);
 
   VoxelIndex sensor_;
   NormalEstimator normals_;
@@ -72,8 +69,8 @@ class RayEnds {
   std::vector<RayEnd> ends_;
   /// By column, a number in ends_ that the pixel above, or here, is likely to end at.
   std::vector<std::uint32_t> end_above_, end_here_;
-  std::vector<TableEntry> table_;    ///< open addressing by key; its size is a power of two
-  std::vector<std::uint32_t> used_;  ///< places of the table in use
+  /// Numbers in ends_, by open addressing; its size is a power of two.
+  std::vector<std::uint32_t> table_;
   PixelCounts counts_;
 };
 
