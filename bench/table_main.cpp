@@ -1,6 +1,7 @@
 // Reads the JSON of nextview_bench and prints it for people: conditions, what differs, figures with
 // ratios, and where they stand against what was asked for.
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
@@ -52,7 +53,7 @@ std::string without_options(std::string name) {
 }
 
 // Google Benchmark writes NaN where a counter's mean is 0, which is no JSON.
-Json read_json(const char* path) {
+Json read_json(const std::string& path) {
   std::ifstream file(path);
   std::string text(std::istreambuf_iterator<char>(file), {});
   const std::string nan = ": NaN";
@@ -229,24 +230,56 @@ void print_goals(const Figures& figures) {
   goals.ms_at_most(15.0, "scan/nextview/conference/500x500");
 }
 
+// Puts what another process has measured behind what is there.
+void append(Json& all, const Json& part) {
+  if (all.is_null()) {
+    all = part;
+    return;
+  }
+  for (const auto& [key, value] : part.at("context").items()) {
+    if (!all["context"].contains(key)) all["context"][key] = value;
+  }
+  for (const Json& run : part.at("benchmarks")) all["benchmarks"].push_back(run);
+}
+
+void print(const Json& json) {
+  std::vector<std::string> order;
+  std::vector<std::string> failed;
+  const Figures figures = read_figures(json, order, failed);
+  print_context(json.at("context"));
+  print_tables(figures, order);
+  print_goals(figures);
+  for (const std::string& line : failed) std::printf("\nNOT MEASURED: %s\n", line.c_str());
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 2) {
-    std::cerr << "usage: nextview_bench_table FILE.json\n";
-    return 2;
+  CLI::App app("Prints what nextview_bench has measured.");
+  std::vector<std::string> files;
+  std::string merged;
+  app.add_option("FILE", files, "JSON of nextview_bench; several are put together")
+      ->required()
+      ->check(CLI::ExistingFile);
+  app.add_option("--merge", merged, "Write them as one to this file");
+  CLI11_PARSE(app, argc, argv);
+  Json json;
+  for (const std::string& file : files) {
+    try {
+      append(json, read_json(file));
+    } catch (const Json::exception& error) {
+      std::cerr << file << " is not what nextview_bench writes: " << error.what() << "\n";
+      return 1;
+    }
+  }
+  if (!merged.empty() && !(std::ofstream(merged) << json.dump(2) << '\n')) {
+    std::cerr << merged << " cannot be written\n";
+    return 1;
   }
   try {
-    const Json json = read_json(argv[1]);
-    std::vector<std::string> order;
-    std::vector<std::string> failed;
-    const Figures figures = read_figures(json, order, failed);
-    print_context(json.at("context"));
-    print_tables(figures, order);
-    print_goals(figures);
-    for (const std::string& line : failed) std::printf("\nNOT MEASURED: %s\n", line.c_str());
+    print(json);
   } catch (const Json::exception& error) {
-    std::cerr << argv[1] << " is not what nextview_bench writes: " << error.what() << "\n";
+    std::cerr << "not what nextview_bench writes: " << error.what() << "\n";
     return 1;
   }
   return 0;
