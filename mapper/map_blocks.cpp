@@ -4,6 +4,22 @@
 
 namespace nextview {
 
+namespace {
+
+// Not a member: clang cannot link clones of those.
+NEXTVIEW_VECTOR_CLONES
+void number_blocks(const std::array<BlockAxis, 3>& of, std::span<const std::uint32_t> slots,
+                   std::uint32_t* __restrict blocks) {
+  const std::array<BlockAxis, 3> axes = of;
+#pragma omp simd
+  for (std::size_t n = 0; n < slots.size(); ++n) {
+    const std::uint32_t slot = slots[n];
+    blocks[n] = axes[0].part_of(slot) + axes[1].part_of(slot) + axes[2].part_of(slot);
+  }
+}
+
+}  // namespace
+
 MapBlocks::MapBlocks(const VoxelMap& map) : window_(map.window()) {
   std::uint32_t stride = 1;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -19,14 +35,8 @@ MapBlocks::MapBlocks(const VoxelMap& map) : window_(map.window()) {
   }
 }
 
-NEXTVIEW_VECTOR_CLONES
 void MapBlocks::blocks_of(std::span<const std::uint32_t> slots, std::uint32_t* blocks) const {
-  const auto axes = axes_;
-#pragma omp simd
-  for (std::size_t n = 0; n < slots.size(); ++n) {
-    const std::uint32_t slot = slots[n];
-    blocks[n] = axes[0].part_of(slot) + axes[1].part_of(slot) + axes[2].part_of(slot);
-  }
+  number_blocks(axes_, slots, blocks);
 }
 
 VoxelIndex MapBlocks::coordinate(std::uint32_t block) const {
@@ -40,7 +50,7 @@ std::array<std::uint32_t, 6> MapBlocks::neighbours(std::uint32_t block) const {
   std::array<std::uint32_t, 6> numbers;
   std::uint32_t along = block;
   for (std::size_t n = 0; n < 3; ++n) {
-    const Axis& axis = axes_[n];
+    const BlockAxis& axis = axes_[n];
     const std::uint32_t place = along % axis.count;
     numbers[2 * n] = place > 0 ? block - axis.stride : size();
     numbers[2 * n + 1] = place + 1 < axis.count ? block + axis.stride : size();

@@ -8,13 +8,28 @@
 
 namespace nextview {
 
+/// How an axis' part of a slot becomes its part of a block's number.
+struct BlockAxis {
+  std::uint32_t shift, mask;  ///< of the slot
+  std::uint32_t begin;        ///< the window's first index; only its lowest bits matter
+  std::uint32_t count;        ///< of blocks
+  std::uint32_t stride;       ///< between their numbers
+
+  static constexpr std::uint32_t kSide = 8;  ///< of a block, in voxels
+
+  std::uint32_t part_of(std::uint32_t slot) const {
+    const std::uint32_t in_window = ((slot >> shift & mask) - begin) & mask;
+    return (in_window + begin % kSide) / kSide * stride;
+  }
+};
+
 /// The division of a map's window into blocks of 8 x 8 x 8 voxels, aligned to absolute indices:
 /// block (bx, by, bz) holds the voxels with index >> 3 = (bx, by, bz). So blocks are the same
 /// wherever the window lies; those at its border stick out of it, and what sticks out reads
 /// Unmarked. Blocks are numbered x fastest, then y, then z.
 class MapBlocks {
  public:
-  static constexpr int kSide = 8;
+  static constexpr int kSide = BlockAxis::kSide;
   static constexpr int kVoxels = kSide * kSide * kSide;
   static constexpr std::size_t kOutside = ~std::size_t{0};
 
@@ -40,22 +55,9 @@ class MapBlocks {
   std::array<AxisSlots, 3> slots(std::uint32_t block) const;
 
  private:
-  // How an axis' part of a slot becomes its part of a block's number.
-  struct Axis {
-    std::uint32_t shift, mask;  ///< of the slot
-    std::uint32_t begin;        ///< the window's first index; only its lowest bits matter
-    std::uint32_t count;        ///< of blocks
-    std::uint32_t stride;       ///< between their numbers
-
-    std::uint32_t part_of(std::uint32_t slot) const {
-      const std::uint32_t in_window = ((slot >> shift & mask) - begin) & mask;
-      return (in_window + begin % kSide) / kSide * stride;
-    }
-  };
-
   MapWindow window_;
   VoxelIndex first_;  ///< absolute coordinate of block 0
-  std::array<Axis, 3> axes_;
+  std::array<BlockAxis, 3> axes_;
 };
 
 }  // namespace nextview
