@@ -65,10 +65,11 @@ double bus_and_waiting_share(const FinishedRun& run) {
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     const ViewRow& row = run.rows[i];
     const double mapper_s = row.commit.update_wall_s + row.commit.digest_wall_s;
-    // The time ends with the last commit, which nobody plans after.
+    // The time ends with the last commit, whatever the planner does beside it.
     const bool last = i + 1 == run.rows.size();
-    const double planner_s = last ? 0.0 : row.fold_wall_s + run.rows[i + 1].goal.plan_wall_s;
-    working_s += row.arrival.move_wall_s + row.scan_wall_s + std::max(mapper_s, planner_s);
+    const double planner_s = last ? 0.0 : row.fold_wall_s + run.rows[i + 1].first_plan_wall_s;
+    working_s += row.refused_wall_s + row.arrival.move_wall_s + row.scan_wall_s +
+                 std::max(mapper_s, planner_s);
   }
   return std::max(0.0, 1.0 - working_s / run.first_goal_to_last_commit_s);
 }

@@ -17,6 +17,11 @@ const ViewRow* ViewRows::advance(RunRecord& record) {
   row.arrival = *record.arrival(view, attempt);
   const RecordedRangeImage& image = *record.range_image(view, attempt);
   row.scan_wall_s = image.scan_wall_s;
+  row.first_plan_wall_s = record.goal(view, 1)->plan_wall_s;
+  for (int refused = 1; refused < attempt; ++refused) {
+    row.refused_wall_s +=
+        record.arrival(view, refused)->move_wall_s + record.goal(view, refused + 1)->plan_wall_s;
+  }
   const FoldReport& fold = builder_.fold(image.received.image);
   coverage_.add_view(builder_.map(), fold);
   row.surface_coverage = coverage_.after_view(view);

@@ -19,8 +19,10 @@ struct ViewRow {
   commit_t commit{};
   std::optional<double> surface_coverage;
   double scan_wall_s = 0.0;
-  double fold_wall_s = 0.0;  ///< the planner's own map update
-  double wait_wall_s = 0.0;  ///< of the planner, for the range image and the commit
+  double first_plan_wall_s = 0.0;  ///< the decision of attempt 1, made beside the mapper's update
+  double refused_wall_s = 0.0;     ///< refusals of the base, and the decisions that followed them
+  double fold_wall_s = 0.0;        ///< the planner's own map update and digest
+  double wait_wall_s = 0.0;        ///< of the planner, for the range image and the commit
 
   bool chosen() const { return view > 1; }  ///< view 1 is the scan at the start
 };

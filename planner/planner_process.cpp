@@ -62,7 +62,7 @@ bool PlannerProcess::step() {
     finish_view(commit->second);
     return true;
   }
-  if (!planned_ahead_ && view_ < stop_parameters_.max_views) {
+  if (!planned_ahead_ && !to_stop_) {
     plan(view_ + 1, 1);
     planned_ahead_ = true;
     idle_since_ = Clock::now();
@@ -77,6 +77,9 @@ void PlannerProcess::fold(const ReceivedRangeImage& received) {
   const FoldReport& report = builder_.fold(received.image);
   predictor_->map_changed(builder_.map(), report.changed_slots, report.updated_surfaces);
   digest_ = builder_.digest();
+  views_.push_back(
+      view_facts(report.newly_occupied, config_.voxel_size_m, builder_.statistics().min_quality));
+  to_stop_ = should_stop(views_, stop_parameters_);
   present_ = received.image.pose;
   utime_ = received.utime;
   refused_.clear();
@@ -87,16 +90,14 @@ void PlannerProcess::fold(const ReceivedRangeImage& received) {
 
 void PlannerProcess::finish_view(const commit_t& commit) {
   wait_wall_s_ += seconds_between(idle_since_, Clock::now());
-  views_.push_back(
-      view_facts(commit.newly_occupied_voxels, config_.voxel_size_m, commit.min_quality));
   if (digest_ != commit.map_digest) {
     stop(StopReason::DigestMismatch, "view " + std::to_string(view_) + ": the mapper's map has " +
                                          commit.map_digest + ", the planner's " + digest_);
     return;
   }
-  if (const auto reason = should_stop(views_, stop_parameters_)) {
+  if (to_stop_) {
     attempt_ = 0;
-    stop(*reason, std::string(describe(*reason)));
+    stop(*to_stop_, std::string(describe(*to_stop_)));
     return;
   }
   ++view_;

@@ -68,12 +68,13 @@ class PlannerProcess : public BusProcess {
   bool planned_ahead_ = false;
   bool ended_ = false;
   std::int64_t utime_ = 0;
-  SensorPose present_;                // of the last range image folded
-  SensorPose goal_;                   // of the present attempt
-  std::vector<SensorPose> refused_;   // goals of the present view
-  std::vector<ViewFacts> views_;      // committed
-  std::string digest_;                // of the map after the last fold
-  std::optional<Decision> decision_;  // the last one; nothing when no position is feasible
+  SensorPose present_;                 // of the last range image folded
+  SensorPose goal_;                    // of the present attempt
+  std::vector<SensorPose> refused_;    // goals of the present view
+  std::vector<ViewFacts> views_;       // folded
+  std::optional<StopReason> to_stop_;  // once the commit of the last of them has come
+  std::string digest_;                 // of the map after the last fold
+  std::optional<Decision> decision_;   // the last one; nothing when no position is feasible
   Clock::time_point idle_since_;
   double fold_wall_s_ = 0.0;
   double plan_wall_s_ = 0.0;

@@ -4,14 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <iostream>
-#include <numbers>
 
 #include "base_sim/base_sim_process.h"
 #include "mapper/mapper_process.h"
 #include "planner/planner_process.h"
-#include "sensor_sim/mesh_file.h"
 #include "sensor_sim/sensor_sim_process.h"
-#include "tests/lcmtypes/examples.h"
+#include "tests/lcmtypes/boxes_run.h"
 #include "tests/lcmtypes/lossy_network.h"
 
 namespace nextview {
@@ -20,22 +18,9 @@ namespace {
 using std::chrono::milliseconds;
 
 run_config_t boxes_config() {
-  run_config_t config = example<run_config_t>();
-  config.scene_file = NEXTVIEW_SOURCE_DIR "/scenes/boxes/boxes.obj";
-  const TriangleMesh mesh = load_mesh(config.scene_file);
-  config.scene_digest = mesh_digest(mesh);
-  config.start_m[0] = 0.7;
-  config.start_m[1] = 1.0;
-  config.start_m[2] = 1.2;
-  config.start_pan_rad = -std::numbers::pi / 2.0;
+  run_config_t config = boxes_run_config();
   config.columns = 128;  // 16 384 pixels: an image of two parts
   config.rows = 128;
-  for (int axis = 0; axis < 3; ++axis) {
-    config.workspace_min_m[axis] = mesh.bounds_m().min()[axis];
-    config.workspace_max_m[axis] = mesh.bounds_m().max()[axis];
-    config.window_min[axis] = -1;
-    config.window_size[axis] = 64;
-  }
   config.max_views = 8;
   return config;
 }

@@ -31,6 +31,7 @@ FinishedRun two_views() {
     row.goal.iterations = 6;
     row.goal.evaluations = 9;
     row.goal.plan_wall_s = view == 1 ? 0.0 : 0.004;
+    row.first_plan_wall_s = row.goal.plan_wall_s;
     row.arrival.path_length_m = view == 1 ? 0.0 : 1.5;
     row.commit.pan_rad = std::numbers::pi / 2.0;
     row.commit.map_digest = kDigest;
@@ -105,6 +106,9 @@ TEST(Summary, CountsAsBusAndWaitingWhatNoStageOnTheLongestWayTakes) {
   // An update longer than fold and plan is what the goal waits for.
   run.rows[0].commit.update_wall_s = 0.007;
   EXPECT_NEAR(share(), 0.4, 1e-12);
+  // What follows a refusal is beside nothing.
+  run.rows[1].refused_wall_s = 0.002;
+  EXPECT_NEAR(share(), 0.3, 1e-12);
 }
 
 TEST(Summary, OfARunWithoutViewsIsWholeToo) {
