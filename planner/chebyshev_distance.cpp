@@ -49,16 +49,17 @@ void lower_along(const Byte* in, Byte* __restrict out, std::size_t by, std::size
 }  // namespace
 
 void ChebyshevDistance::resize(const VoxelIndex& cells, int threads) {
+  if (cells == cells_ && threads == threads_) return;
   threads_ = threads;
-  if (cells == cells_) return;
   cells_ = cells;
   rows_ = cells[1];
   layers_ = cells[2];
   stride_ = (static_cast<std::size_t>(cells[0]) + 2 * kMargin - 1) / kMargin * kMargin;
   layer_ = stride_ * static_cast<std::size_t>(rows_);
   distances_.assign((layer_ + kMargin) * static_cast<std::size_t>(layers_) + kMargin, kLargest);
-  come_up_ = free_layer();
-  come_down_ = free_layer();
+  for (Bytes* layer : {&come_up_, &come_down_}) {
+    layer->assign(threads > 1 ? layer_ + 2 * stride_ : 0, kLargest);
+  }
 }
 
 void ChebyshevDistance::fill_row(int y, int z, const Byte* bytes, Byte largest_free) {

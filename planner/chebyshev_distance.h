@@ -42,7 +42,9 @@ class ChebyshevDistance {
   /// Then all share the layers. The result is the same.
   void find();
 
-  std::size_t memory_bytes() const { return distances_.capacity(); }
+  std::size_t memory_bytes() const {
+    return distances_.capacity() + come_up_.capacity() + come_down_.capacity();
+  }
 
  private:
   // Loops run over all rows of a layer as if they were one long row. So many free cells lie between

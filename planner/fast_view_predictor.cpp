@@ -162,14 +162,12 @@ void FastViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
 void FastViewPredictor::predict_all(const VoxelMap& map, std::span<const VoxelIndex> sensors,
                                     std::span<ViewCounts> counts,
                                     const std::function<void()>& meanwhile) {
+  const std::size_t views = orientations().size();
+  check_count(sensors.size(), counts.size());
+  for (const VoxelIndex& sensor : sensors) check_arguments(map, sensor, views);
   if (sensors.empty()) {
     meanwhile();
     return;
-  }
-  const std::size_t views = orientations().size();
-  if (counts.size() % sensors.size() != 0) check_arguments(map, sensors[0], counts.size());
-  for (const VoxelIndex& sensor : sensors) {
-    check_arguments(map, sensor, counts.size() / sensors.size());
   }
   prepare(map);
   std::fill(counts.begin(), counts.end(), ViewCounts());
@@ -189,8 +187,8 @@ void FastViewPredictor::fill_queues(std::size_t jobs) {
     const std::size_t end = first_job(thread + 1, jobs);
     for (std::size_t job = first; job < end; ++job) {
       const std::size_t packets = tables_[job % tables_.size()].bundle.packets.size();
-      // The last third of a thread's jobs is what others will help with.
-      const bool shared = 3 * (job - first) >= 2 * (end - first);
+      // What others will help with: the last third of a thread's jobs, or all when it has few.
+      const bool shared = end - first < 3 || 3 * (job - first) >= 2 * (end - first);
       const std::size_t portion = threads() == 1 ? packets : shared ? kPortion : (packets + 1) / 2;
       queues_[job].refill(packets, portion);
     }

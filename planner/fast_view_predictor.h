@@ -15,8 +15,8 @@ namespace nextview {
 /// all orientations are tabulated once (their lines do not depend on where the sensor is), and walk
 /// through a FreeSpaceField many at a time (ray_kernel.h). The table is sorted by where rays point,
 /// not by whose they are, so that rays of different orientations that go the same way go together.
-/// Threads share the tables between them, of several sensors at once where there are, and count each
-/// for itself; sums of integers do not depend on how.
+/// Threads share the tables between them, of several sensors at once where there are, and count
+/// each for itself; sums of integers do not depend on how.
 class FastViewPredictor : public RasterViewPredictor {
  public:
   /// @param threads how many may work at a time, at least 1
@@ -52,8 +52,8 @@ class FastViewPredictor : public RasterViewPredictor {
     std::vector<RayCounts> counts;  // by sensor, then by orientation
     ImprovementCount improvement;
   };
-  // All tables from one sensor after the other are the jobs of a prediction. Threads share them as
-  // evenly, each beginning with jobs of its own.
+  // The jobs of a prediction are all tables from the first sensor, then all from the next. Each
+  // thread begins with jobs of its own, the same number for all as far as that goes.
   std::size_t first_job(std::size_t thread, std::size_t jobs) const {
     return thread * jobs / workspaces_.size();
   }

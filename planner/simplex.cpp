@@ -17,7 +17,7 @@ class Simplex {
       : values_(values), result_(result) {}
 
   /// Tries the first vertices, in their order.
-  void begin(std::span<const Eigen::Vector3d> positions) {
+  void try_first(std::span<const Eigen::Vector3d> positions) {
     const std::vector<double> values = values_(positions);
     for (std::size_t i = 0; i < positions.size(); ++i) {
       const SimplexMove move = i == 0 ? SimplexMove::FirstVertex : SimplexMove::InitialVertex;
@@ -99,7 +99,7 @@ SimplexResult maximise_by_simplex(const std::array<Eigen::Vector3d, 4>& vertices
   if (!(tolerance >= 0.0)) throw std::invalid_argument("a simplex's tolerance must be 0 or more");
   SimplexResult result;
   Simplex simplex(values, result);
-  simplex.begin(vertices);
+  simplex.try_first(vertices);
   simplex.sort();
   while (!simplex.flat(tolerance) &&
          result.tried.size() < static_cast<std::size_t>(max_evaluations)) {

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "sensor_sim/sensor_pose.h"
 
@@ -35,9 +36,17 @@ std::uint16_t predicted_quality(std::int32_t cosine) {
   return static_cast<std::uint16_t>(std::min<std::int64_t>(rounded, SurfaceVoxel::kQualityUnit));
 }
 
+void ViewPredictor::check_count(std::size_t sensors, std::size_t counts) const {
+  if (counts == sensors * orientations().size()) return;
+  throw std::invalid_argument(std::to_string(counts) + " counts for " + std::to_string(sensors) +
+                              " sensors with " + std::to_string(orientations().size()) +
+                              " orientations each");
+}
+
 void ViewPredictor::predict_all(const VoxelMap& map, std::span<const VoxelIndex> sensors,
                                 std::span<ViewCounts> counts,
                                 const std::function<void()>& meanwhile) {
+  check_count(sensors.size(), counts.size());
   meanwhile();
   const std::size_t views = orientations().size();
   for (std::size_t i = 0; i < sensors.size(); ++i) {

@@ -69,6 +69,8 @@ class ViewPredictor {
   /// second, and so on. With threads that takes less time than one after the other.
   /// @param meanwhile what this thread has to do before it takes part, such as finding out where to
   ///        predict next
+  /// @throws std::invalid_argument as predict() does, also unless there are as many counts as
+  ///         sensors times orientations
   virtual void predict_all(
       const VoxelMap& map, std::span<const VoxelIndex> sensors, std::span<ViewCounts> counts,
       const std::function<void()>& meanwhile = [] {});
@@ -86,6 +88,9 @@ class ViewPredictor {
  protected:
   ViewPredictor(std::vector<Orientation> orientations, bool counts_quality)
       : orientations_(std::move(orientations)), counts_quality_(counts_quality) {}
+  /// Throws what predict_all() promises of the number of counts.
+  void check_count(std::size_t sensors, std::size_t counts) const;
+
   ViewPredictor(const ViewPredictor&) = default;
   ViewPredictor& operator=(const ViewPredictor&) = default;
 

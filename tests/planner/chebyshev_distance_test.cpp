@@ -27,8 +27,8 @@ std::vector<int> brute_force(const VoxelIndex& cells, const std::vector<VoxelInd
 }
 
 std::vector<int> by_rows(ChebyshevDistance& distance, const VoxelIndex& cells,
-                         const std::vector<VoxelIndex>& obstacles) {
-  distance.resize(cells);
+                         const std::vector<VoxelIndex>& obstacles, int threads = 1) {
+  distance.resize(cells, threads);
   std::vector<std::uint8_t> is_obstacle(static_cast<std::size_t>(cells.prod()), 0);
   const auto at = [&cells](int x, int y, int z) {
     return static_cast<std::size_t>((z * cells[1] + y) * cells[0] + x);
@@ -39,6 +39,7 @@ std::vector<int> by_rows(ChebyshevDistance& distance, const VoxelIndex& cells,
   for (int z = 0; z < cells[2]; ++z) {
     for (int y = 0; y < cells[1]; ++y) distance.fill_row(y, z, &is_obstacle[at(0, y, z)], 0);
   }
+#pragma omp parallel num_threads(threads) if (threads > 1)
   distance.find();
   std::vector<int> distances;
   for (int z = 0; z < cells[2]; ++z) {
@@ -88,13 +89,17 @@ TEST(ChebyshevDistance, AgreesWithTheDefinitionInRandomBoxes) {
   ChebyshevDistance distance;  // one for all: it must forget the last box
   int cells_compared = 0;
   for (int box = 0; box < 150; ++box) {
-    const VoxelIndex cells(1 + below(75), 1 + below(45), 1 + below(40));
+    // Every tenth box has one or two layers, so that a half of it is empty or a single layer.
+    const VoxelIndex cells(1 + below(75), 1 + below(45), 1 + below(box % 10 == 0 ? 2 : 40));
     std::vector<VoxelIndex> obstacles;
     for (int i = below(12); i > 0; --i) {
       obstacles.emplace_back(below(cells[0]), below(cells[1]), below(cells[2]));
     }
-    ASSERT_EQ(by_rows(distance, cells, obstacles), brute_force(cells, obstacles))
-        << "box " << box << " of " << cells.transpose();
+    const std::vector<int> expected = brute_force(cells, obstacles);
+    for (const int threads : {1, 2, 3, 7}) {
+      ASSERT_EQ(by_rows(distance, cells, obstacles, threads), expected)
+          << "box " << box << " of " << cells.transpose() << ", " << threads << " threads";
+    }
     cells_compared += cells.prod();
   }
   EXPECT_GE(cells_compared, 1'000'000);

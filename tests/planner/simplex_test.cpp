@@ -2,10 +2,14 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <set>
+#include <span>
 #include <stdexcept>
+#include <vector>
 
 #include "sensor_sim/random_stream.h"
 
@@ -64,6 +68,27 @@ TEST(Simplex, ReflectsTheYoungestOfEqualWorstVertices) {
   ASSERT_GE(result.tried.size(), 5u);
   EXPECT_EQ(result.tried[4].move, SimplexMove::Reflection);
   EXPECT_NEAR((result.tried[4].position - (2.0 * face - kCorner[3])).norm(), 0.0, 1e-12);
+}
+
+// So that they can be worked out together.
+TEST(Simplex, AsksForAllPositionsAtOnceThatItNeedsBeforeItGoesOn) {
+  std::vector<std::size_t> asked;
+  const ValuesOfPositions ridge = [&asked](std::span<const Vector3d> positions) {
+    asked.push_back(positions.size());
+    std::vector<double> values;
+    for (const Vector3d& p : positions) {
+      values.push_back(-100.0 * std::abs(p.y() - p.x() * p.x()) - std::abs(1.0 - p.x()));
+    }
+    return values;
+  };
+  const auto result = nextview::maximise_by_simplex(kCorner, ridge, 1e-6, 400);
+  const auto shrunk = std::count_if(
+      result.tried.begin(), result.tried.end(),
+      [](const SimplexTrial& trial) { return trial.move == SimplexMove::Contraction3D; });
+  ASSERT_GT(shrunk, 0);
+  EXPECT_EQ(asked.front(), 4u);
+  EXPECT_EQ(3 * std::count(asked.begin(), asked.end(), 3u), shrunk);
+  EXPECT_EQ(4 + shrunk + std::count(asked.begin(), asked.end(), 1u), std::ssize(result.tried));
 }
 
 TEST(Simplex, AFlatFunctionStopsAtOnce) {
