@@ -1,6 +1,7 @@
 #include <unistd.h>
 
 #include <csignal>
+#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
@@ -57,6 +58,14 @@ void write_artefacts(const FinishedRun& run, const ArtefactFiles& files) {
   }
 }
 
+/// Has the planner's threads (--threads) fall asleep after about a millisecond without work, which
+/// OpenMP reads from the environment when a program starts. Its default of 300 000 turns keeps them
+/// awake for so long that, where cores are scarce, nobody else gets on.
+void limit_idle_threads() {
+  constexpr int kDoNotReplace = 0;
+  ::setenv("GOMP_SPINCOUNT", "30000", kDoNotReplace);
+}
+
 int run(const nextview::RunOptions& options, nextview::Run::Clock::time_point start) {
   nextview::RunSetup setup = nextview::prepare_run(options);
   const std::filesystem::path folder = make_folder(options, setup.config.scene_name);
@@ -88,6 +97,7 @@ int main(int argc, char** argv) {
   int exit_status = 0;
   const auto options = nextview::parse_run_options(argc, argv, exit_status);
   if (!options) return exit_status;
+  limit_idle_threads();
   nextview::note_signals();
   std::signal(SIGPIPE, SIG_IGN);
   try {
