@@ -198,9 +198,7 @@ void FastViewPredictor::fill_queues(std::size_t jobs) {
 void FastViewPredictor::predict_together(std::span<const VoxelIndex> sensors,
                                          std::span<ViewCounts> counts,
                                          const std::function<void()>& meanwhile) {
-  const std::size_t views = orientations().size();
-  const std::size_t jobs = sensors.size() * tables_.size();
-  fill_queues(jobs);
+  fill_queues(sensors.size() * tables_.size());
   std::size_t team = 1;  // there can be fewer threads than were asked for
   std::exception_ptr thrown;
 #pragma omp parallel num_threads(threads()) if (threads() > 1)
@@ -217,14 +215,7 @@ void FastViewPredictor::predict_together(std::span<const VoxelIndex> sensors,
     const auto thread = static_cast<std::size_t>(omp_get_thread_num());
     Workspace& workspace = workspaces_[thread];
     workspace.counts.assign(counts.size(), RayCounts());
-    const std::size_t first = first_job(thread, jobs);
-    for (std::size_t i = 0; i < jobs; ++i) {
-      const std::size_t job = (first + i) % jobs;
-      const std::size_t sensor = job / tables_.size();
-      if (queues_[job].empty()) continue;
-      cast(tables_[job % tables_.size()], queues_[job], sensors[sensor],
-           &workspace.counts[sensor * views]);
-    }
+    do_jobs(sensors, thread, workspace);
     if (counts_quality()) {
 #pragma omp barrier
 #pragma omp for schedule(dynamic)
@@ -234,9 +225,28 @@ void FastViewPredictor::predict_together(std::span<const VoxelIndex> sensors,
     }
   }
   if (thrown) std::rethrow_exception(thrown);
+  add_up(std::span(workspaces_).first(team), counts);
+}
+
+void FastViewPredictor::do_jobs(std::span<const VoxelIndex> sensors, std::size_t thread,
+                                Workspace& workspace) {
+  const std::size_t views = orientations().size();
+  const std::size_t jobs = sensors.size() * tables_.size();
+  const std::size_t first = first_job(thread, jobs);
+  for (std::size_t i = 0; i < jobs; ++i) {
+    const std::size_t job = (first + i) % jobs;
+    const std::size_t sensor = job / tables_.size();
+    if (queues_[job].empty()) continue;
+    cast(tables_[job % tables_.size()], queues_[job], sensors[sensor],
+         &workspace.counts[sensor * views]);
+  }
+}
+
+void FastViewPredictor::add_up(std::span<const Workspace> workspaces,
+                               std::span<ViewCounts> counts) const {
   for (std::size_t i = 0; i < counts.size(); ++i) {
     ViewCounts& view = counts[i];
-    for (const Workspace& workspace : std::span(workspaces_).first(team)) {
+    for (const Workspace& workspace : workspaces) {
       view.occupied += workspace.counts[i].occupied;
       view.occlusion_plane += workspace.counts[i].occlusion_plane;
       view.unseen += workspace.counts[i].unseen;

@@ -64,6 +64,9 @@ class FastViewPredictor : public RasterViewPredictor {
   void predict_together(std::span<const VoxelIndex> sensors, std::span<ViewCounts> counts,
                         const std::function<void()>& meanwhile);
   void fill_queues(std::size_t jobs);
+  // What a thread does of the jobs: its own, then what others have left.
+  void do_jobs(std::span<const VoxelIndex> sensors, std::size_t thread, Workspace& workspace);
+  void add_up(std::span<const Workspace> workspaces, std::span<ViewCounts> counts) const;
   void cast(Table& table, PacketQueue& queue, const VoxelIndex& sensor, RayCounts* counts) const;
   void count_improvements(std::size_t orientation, Workspace& workspace, ViewCounts& counts) const;
 

@@ -36,6 +36,7 @@ class SegmentWalk {
   SegmentWalk(const VoxelGrid& grid, const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m);
 
   const VoxelIndex& voxel() const { return voxel_; }
+  /// Where the walk will end.
   const VoxelIndex& last() const { return last_; }
   bool at_end() const { return voxel_ == last_; }
   /// To the next voxel; not to be called at the end.
