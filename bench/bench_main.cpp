@@ -32,7 +32,9 @@ int main(int argc, char** argv) {
     }
   }
   if (!only.empty() && !groups.contains(only)) {
-    std::cerr << "nextview_bench: no group " << only << "\n";
+    std::cerr << "nextview_bench: no group " << only << "; there are:";
+    for (const auto& [name, register_group] : groups) std::cerr << " " << name;
+    std::cerr << "\n";
     return 2;
   }
   report_conditions();

@@ -203,11 +203,16 @@ class Goals {
 void print_goals(const Figures& figures) {
   std::printf("\nAgainst what was asked for\n");
   const Goals goals(figures);
-  goals.at_least(40.0, "view_evaluation/nextview/5cm", "view_evaluation/textbook/5cm");
-  goals.at_least(200.0, "view_evaluation/nextview/5cm", "view_evaluation/octomap/5cm");
-  for (const std::string directions : {"320", "1280"}) {
-    goals.time_at_most(2.0, "view_evaluation/nextview_panorama_" + directions + "/5cm",
-                       "view_evaluation/nextview/5cm");
+  for (const std::string target : {"", "_on_AVX2"}) {
+    const std::string ours = "view_evaluation/nextview" + target + "/5cm";
+    goals.at_least(40.0, ours, "view_evaluation/textbook/5cm");
+    goals.at_least(200.0, ours, "view_evaluation/octomap/5cm");
+  }
+  for (const std::string size : {"/10cm", "/5cm", "/2cm"}) {
+    for (const std::string directions : {"320", "1280"}) {
+      goals.time_at_most(2.0, "view_evaluation/nextview_panorama_" + directions + size,
+                         "view_evaluation/nextview" + size);
+    }
   }
   for (const std::string room : {"boxes", "columns"}) {
     const std::string run = "/" + room + "/10cm/all_views";
