@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "sensor_sim/scan.h"
+#include "scene/enclosure.h"
 
 namespace nextview {
 namespace {

@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "sensor_sim/scene.h"
-#include "sensor_sim/sensor_pose.h"
+#include "scene/scene.h"
+#include "sensor/sensor_pose.h"
 
 namespace nextview {
 

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <vector>
 
-#include "sensor_sim/scene_config.h"
+#include "scene/scene_config.h"
 
 namespace nextview {
 namespace {

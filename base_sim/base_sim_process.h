@@ -5,7 +5,7 @@
 
 #include "base_sim/base.h"
 #include "lcmtypes/bus_process.h"
-#include "sensor_sim/scene.h"
+#include "scene/scene.h"
 
 namespace nextview {
 

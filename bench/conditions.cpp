@@ -9,7 +9,7 @@
 #include <iostream>
 
 #include "bench/openvdb_map.h"
-#include "planner/ray_kernel.h"
+#include "planner/prediction/ray_kernel.h"
 
 namespace nextview {
 

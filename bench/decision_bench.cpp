@@ -12,9 +12,9 @@
 #include "bench/recovered_room.h"
 #include "bench/stopwatch.h"
 #include "bench/textbook_ray_walk.h"
-#include "planner/fast_view_predictor.h"
-#include "planner/orientations.h"
-#include "planner/panorama_view_predictor.h"
+#include "planner/prediction/fast_view_predictor.h"
+#include "planner/prediction/orientations.h"
+#include "planner/prediction/panorama_view_predictor.h"
 
 namespace nextview {
 

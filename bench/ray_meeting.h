@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "mapper/voxel_map.h"
-#include "planner/view_predictor.h"
-#include "sensor_sim/sensor_pose.h"
+#include "planner/prediction/view_predictor.h"
+#include "sensor/sensor_pose.h"
 
 namespace nextview {
 

@@ -6,8 +6,8 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "scene/scene_catalog.h"
 #include "sensor_sim/scan.h"
-#include "sensor_sim/scene_catalog.h"
 
 namespace nextview {
 

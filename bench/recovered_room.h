@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "mapper/map_builder.h"
-#include "planner/view_predictor.h"
-#include "sensor_sim/range_image.h"
-#include "sensor_sim/scene.h"
+#include "planner/prediction/view_predictor.h"
+#include "scene/scene.h"
+#include "sensor/range_image.h"
 
 namespace nextview {
 

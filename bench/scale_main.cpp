@@ -10,10 +10,10 @@
 #include <vector>
 
 #include "bench/exploration.h"
-#include "planner/fast_view_predictor.h"
-#include "planner/free_space_field.h"
-#include "planner/orientations.h"
-#include "sensor_sim/mesh_file.h"
+#include "planner/prediction/fast_view_predictor.h"
+#include "planner/prediction/free_space_field.h"
+#include "planner/prediction/orientations.h"
+#include "scene/mesh_file.h"
 
 namespace nextview {
 

@@ -15,8 +15,8 @@
 #include "bench/bench_groups.h"
 #include "bench/recovered_room.h"
 #include "lcmtypes/decode.h"
-#include "sensor_sim/mesh_file.h"
-#include "sensor_sim/range_image_message.h"
+#include "scene/mesh_file.h"
+#include "sensor/range_image_message.h"
 #include "sensor_sim/scan.h"
 
 namespace nextview {

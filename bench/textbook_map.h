@@ -4,7 +4,7 @@
 #include <span>
 
 #include "bench/textbook_ray_walk.h"
-#include "sensor_sim/range_image.h"
+#include "sensor/range_image.h"
 
 namespace nextview {
 

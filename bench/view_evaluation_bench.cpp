@@ -13,9 +13,10 @@
 #include "bench/recovered_room.h"
 #include "bench/textbook_ray_walk.h"
 #include "mapper/integer_line.h"
-#include "planner/fast_view_predictor.h"
-#include "planner/orientations.h"
-#include "planner/panorama_view_predictor.h"
+#include "planner/fitness.h"
+#include "planner/prediction/fast_view_predictor.h"
+#include "planner/prediction/orientations.h"
+#include "planner/prediction/panorama_view_predictor.h"
 
 namespace nextview {
 

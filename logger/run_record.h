@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "lcmtypes/channels.h"
-#include "sensor_sim/range_image_message.h"
+#include "sensor/range_image_message.h"
 
 namespace nextview {
 

@@ -3,7 +3,7 @@
 #include <bit>
 
 #include "mapper/map_census.h"
-#include "sensor_sim/vector_clones.h"
+#include "sensor/vector_clones.h"
 
 namespace nextview {
 

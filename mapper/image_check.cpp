@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "sensor_sim/vector_clones.h"
+#include "sensor/vector_clones.h"
 
 namespace nextview {
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "mapper/voxel_grid.h"
-#include "sensor_sim/range_image.h"
+#include "sensor/range_image.h"
 
 namespace nextview {
 

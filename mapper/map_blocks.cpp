@@ -1,6 +1,6 @@
 #include "mapper/map_blocks.h"
 
-#include "sensor_sim/vector_clones.h"
+#include "sensor/vector_clones.h"
 
 namespace nextview {
 

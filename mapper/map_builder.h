@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "mapper/voxel_map.h"
-#include "sensor_sim/range_image.h"
+#include "sensor/range_image.h"
 
 namespace nextview {
 

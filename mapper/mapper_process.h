@@ -4,7 +4,7 @@
 
 #include "lcmtypes/bus_process.h"
 #include "mapper/map_builder.h"
-#include "sensor_sim/range_image_message.h"
+#include "sensor/range_image_message.h"
 
 namespace nextview {
 

@@ -7,7 +7,7 @@
 
 #include "mapper/normal_slopes.h"
 #include "mapper/voxel_map.h"
-#include "sensor_sim/vector_clones.h"
+#include "sensor/vector_clones.h"
 
 namespace nextview {
 

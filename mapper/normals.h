@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "mapper/normal_slopes.h"
-#include "sensor_sim/range_image.h"
+#include "sensor/range_image.h"
 
 namespace nextview {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "sensor_sim/vector_clones.h"
+#include "sensor/vector_clones.h"
 
 namespace nextview {
 

@@ -9,7 +9,7 @@
 #include "mapper/normals.h"
 #include "mapper/pixel_runs.h"
 #include "mapper/voxel_map.h"
-#include "sensor_sim/range_image.h"
+#include "sensor/range_image.h"
 
 namespace nextview {
 

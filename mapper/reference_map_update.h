@@ -7,7 +7,7 @@
 #include "mapper/map_builder.h"
 #include "mapper/normal_slopes.h"
 #include "mapper/voxel_map.h"
-#include "sensor_sim/range_image.h"
+#include "sensor/range_image.h"
 
 namespace nextview {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "mapper/voxel_map.h"
-#include "sensor_sim/sensor_pose.h"
+#include "sensor/sensor_pose.h"
 
 namespace nextview {
 

@@ -7,8 +7,8 @@
 #include <stdexcept>
 #include <unordered_map>
 
-#include "planner/orientations.h"
-#include "sensor_sim/random_stream.h"
+#include "planner/prediction/orientations.h"
+#include "sensor/random_stream.h"
 
 namespace nextview {
 

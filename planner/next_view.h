@@ -9,9 +9,9 @@
 #include "mapper/voxel_map.h"
 #include "planner/feasibility.h"
 #include "planner/fitness.h"
+#include "planner/prediction/view_predictor.h"
 #include "planner/simplex.h"
-#include "planner/view_predictor.h"
-#include "sensor_sim/sensor_pose.h"
+#include "sensor/sensor_pose.h"
 
 namespace nextview {
 

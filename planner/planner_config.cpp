@@ -1,9 +1,9 @@
 #include "planner/planner_config.h"
 
-#include "planner/fast_view_predictor.h"
-#include "planner/orientations.h"
-#include "planner/panorama_view_predictor.h"
-#include "sensor_sim/sensor_config.h"
+#include "planner/prediction/fast_view_predictor.h"
+#include "planner/prediction/orientations.h"
+#include "planner/prediction/panorama_view_predictor.h"
+#include "sensor/sensor_config.h"
 
 namespace nextview {
 

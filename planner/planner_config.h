@@ -4,8 +4,8 @@
 
 #include "lcmtypes/channels.h"
 #include "planner/next_view.h"
+#include "planner/prediction/view_predictor.h"
 #include "planner/termination.h"
-#include "planner/view_predictor.h"
 
 namespace nextview {
 

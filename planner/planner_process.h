@@ -11,9 +11,9 @@
 #include "lcmtypes/bus_process.h"
 #include "mapper/map_builder.h"
 #include "planner/next_view.h"
+#include "planner/prediction/view_predictor.h"
 #include "planner/termination.h"
-#include "planner/view_predictor.h"
-#include "sensor_sim/range_image_message.h"
+#include "sensor/range_image_message.h"
 
 namespace nextview {
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstdint>
 
-#include "sensor_sim/vector_clones.h"
+#include "sensor/vector_clones.h"
 
 namespace nextview {
 namespace {

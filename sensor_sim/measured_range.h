@@ -3,7 +3,7 @@
 #include <limits>
 #include <span>
 
-#include "sensor_sim/range_image.h"
+#include "sensor/range_image.h"
 
 namespace nextview {
 

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "sensor_sim/random_stream.h"
-#include "sensor_sim/range_image.h"
-#include "sensor_sim/scene.h"
+#include "scene/scene.h"
+#include "sensor/random_stream.h"
+#include "sensor/range_image.h"
 
 namespace nextview {
 
@@ -16,14 +16,5 @@ namespace nextview {
 /// max, an empty ray table, or a pose that is not finite
 RangeImage scan(const Scene& scene, const RayTable& rays, const RangeLimits& limits,
                 const SensorPose& pose, double range_noise_m, RandomStream& noise);
-
-/// Share in [0, 1] of a fixed set of evenly spread directions that meet no surface: 0 in a closed
-/// scene.
-double escape_share(const Scene& scene, const Eigen::Vector3d& position_m);
-
-/// Volume seen from a position inside the scene's bounds, in the same directions and up to the
-/// bounds where they meet no surface. From inside a piece of furniture it is very small, whether
-/// the furniture has a bottom or not.
-double visible_volume_m3(const Scene& scene, const Eigen::Vector3d& position_m);
 
 }  // namespace nextview

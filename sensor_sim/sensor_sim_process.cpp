@@ -3,10 +3,10 @@
 #include <cmath>
 #include <utility>
 
-#include "sensor_sim/range_image_message.h"
+#include "scene/scene_config.h"
+#include "sensor/range_image_message.h"
+#include "sensor/sensor_config.h"
 #include "sensor_sim/scan.h"
-#include "sensor_sim/scene_config.h"
-#include "sensor_sim/sensor_config.h"
 
 namespace nextview {
 

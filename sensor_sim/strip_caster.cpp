@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "sensor_sim/vector_clones.h"
+#include "sensor/vector_clones.h"
 
 namespace nextview {
 namespace {

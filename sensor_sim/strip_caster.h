@@ -3,8 +3,8 @@
 #include <span>
 #include <vector>
 
-#include "sensor_sim/scene.h"
-#include "sensor_sim/sensor_geometry.h"
+#include "scene/scene.h"
+#include "sensor/sensor_geometry.h"
 
 namespace nextview {
 

@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <vector>
 
-#include "sensor_sim/brute_force_scene.h"
-#include "sensor_sim/scene_catalog.h"
-#include "tests/sensor_sim/test_worlds.h"
+#include "scene/brute_force_scene.h"
+#include "scene/scene_catalog.h"
+#include "tests/scene/test_worlds.h"
 
 namespace nextview {
 namespace {

@@ -1,6 +1,6 @@
 #include "tests/logger/run_messages.h"
 
-#include "sensor_sim/range_image_message.h"
+#include "sensor/range_image_message.h"
 #include "tests/lcmtypes/examples.h"
 
 namespace nextview {

@@ -7,8 +7,8 @@
 #include <optional>
 #include <vector>
 
-#include "sensor_sim/random_stream.h"
-#include "sensor_sim/range_image.h"
+#include "sensor/random_stream.h"
+#include "sensor/range_image.h"
 
 namespace nextview {
 

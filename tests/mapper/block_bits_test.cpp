@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "analytic_world.h"
 #include "mapper/map_census.h"
+#include "tests/mapper/analytic_world.h"
 
 namespace nextview {
 namespace {

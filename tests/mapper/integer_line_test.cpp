@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "analytic_world.h"
+#include "tests/mapper/analytic_world.h"
 
 namespace nextview {
 namespace {

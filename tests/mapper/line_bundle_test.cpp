@@ -7,7 +7,7 @@
 #include <iostream>
 #include <set>
 
-#include "analytic_world.h"
+#include "tests/mapper/analytic_world.h"
 
 namespace nextview {
 namespace {

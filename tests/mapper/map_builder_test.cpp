@@ -8,8 +8,8 @@
 #include <numbers>
 #include <numeric>
 
-#include "analytic_world.h"
 #include "mapper/map_digest.h"
+#include "tests/mapper/analytic_world.h"
 
 namespace nextview {
 namespace {

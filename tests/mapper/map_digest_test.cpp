@@ -4,8 +4,8 @@
 
 #include <set>
 
-#include "analytic_world.h"
 #include "mapper/map_builder.h"
+#include "tests/mapper/analytic_world.h"
 
 namespace nextview {
 namespace {

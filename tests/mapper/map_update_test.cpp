@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <numbers>
 
-#include "analytic_world.h"
 #include "mapper/map_builder.h"
 #include "mapper/map_digest.h"
 #include "mapper/reference_map_update.h"
+#include "tests/mapper/analytic_world.h"
 
 namespace nextview {
 namespace {

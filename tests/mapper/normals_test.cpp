@@ -7,8 +7,8 @@
 
 #include <numbers>
 
-#include "analytic_world.h"
 #include "mapper/reference_map_update.h"
+#include "tests/mapper/analytic_world.h"
 
 namespace nextview {
 namespace {

@@ -8,7 +8,7 @@
 #include <array>
 #include <iostream>
 
-#include "analytic_world.h"
+#include "tests/mapper/analytic_world.h"
 
 namespace nextview {
 namespace {

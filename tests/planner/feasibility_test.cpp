@@ -6,8 +6,8 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "planner/free_space_field.h"
-#include "sensor_sim/random_stream.h"
+#include "planner/prediction/free_space_field.h"
+#include "sensor/random_stream.h"
 
 namespace nextview {
 namespace {

@@ -11,7 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "sensor_sim/random_stream.h"
+#include "sensor/random_stream.h"
 
 namespace nextview {
 namespace {

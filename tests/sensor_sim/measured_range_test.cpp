@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "tests/sensor_sim/test_worlds.h"
+#include "tests/scene/test_worlds.h"
 
 namespace nextview {
 namespace {

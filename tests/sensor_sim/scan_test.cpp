@@ -10,10 +10,10 @@
 #include <stdexcept>
 #include <vector>
 
-#include "sensor_sim/brute_force_scene.h"
+#include "scene/brute_force_scene.h"
+#include "scene/mesh_file.h"
 #include "sensor_sim/measured_range.h"
-#include "sensor_sim/mesh_file.h"
-#include "tests/sensor_sim/test_worlds.h"
+#include "tests/scene/test_worlds.h"
 
 namespace nextview {
 namespace {
@@ -276,25 +276,6 @@ TEST(Scan, RefusesWhatCannotBe) {
   EXPECT_THROW(scan(scene, rays, {}, pose, -0.1, noise), std::invalid_argument);
   EXPECT_THROW(scan(scene, rays, {}, {{0, nan, 1}, 0, 0}, 0.0, noise), std::invalid_argument);
   EXPECT_THROW(scan(scene, rays, {}, {{0, 0, 1}, nan, 0}, 0.0, noise), std::invalid_argument);
-}
-
-TEST(EscapeShare, NoneInAClosedRoomAndWhatTheCeilingTookUpWithoutIt) {
-  TriangleMesh mesh = load_mesh(kDataFolder / "room.obj");
-  EXPECT_EQ(escape_share(Scene(mesh), {0, 0, 1}), 0.0);
-  // Without a ceiling, seen from a corner of the ceiling's plane, the upper half escapes.
-  std::erase_if(mesh.triangles, [&](const auto& triangle) {
-    return mesh.vertices_m[triangle[0]].z() == 2.0F && mesh.vertices_m[triangle[1]].z() == 2.0F &&
-           mesh.vertices_m[triangle[2]].z() == 2.0F;
-  });
-  ASSERT_EQ(mesh.triangles.size(), 10U);
-  EXPECT_NEAR(escape_share(Scene(mesh), {0, 0, 1.9999}), 0.5, 0.001);
-}
-
-TEST(VisibleVolume, IsTheRoomsAndEndsAtTheBounds) {
-  TriangleMesh mesh = load_mesh(kDataFolder / "room.obj");
-  EXPECT_NEAR(visible_volume_m3(Scene(mesh), {0, 0, 1}), 24.0, 0.3);
-  mesh.triangles.pop_back();  // half a wall
-  EXPECT_NEAR(visible_volume_m3(Scene(mesh), {0, 0, 1}), 24.0, 0.3);
 }
 
 }  // namespace

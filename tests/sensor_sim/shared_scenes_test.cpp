@@ -2,9 +2,10 @@
 
 #include <cmath>
 
+#include "scene/enclosure.h"
+#include "scene/scene_catalog.h"
 #include "sensor_sim/scan.h"
-#include "sensor_sim/scene_catalog.h"
-#include "tests/sensor_sim/test_worlds.h"
+#include "tests/scene/test_worlds.h"
 
 namespace nextview {
 namespace {

@@ -12,7 +12,7 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "logger/file_descriptor.h"
+#include "runner/file_descriptor.h"
 
 namespace nextview {
 namespace {

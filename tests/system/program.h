@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "logger/child_process.h"
+#include "runner/child_process.h"
 
 namespace nextview {
 

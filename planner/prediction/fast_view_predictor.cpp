@@ -1,0 +1,281 @@
+#include "planner/prediction/fast_view_predictor.h"
+
+#include <omp.h>
+
+#include <algorithm>
+#include <array>
+#include <exception>
+#include <stdexcept>
+
+#include "sensor/sensor_pose.h"
+
+namespace nextview {
+
+namespace {
+
+constexpr std::size_t kPacketRays = RayBundle::kPacketRays;
+
+/// What a thread takes from a table at a time when there are several: a few microseconds of work.
+constexpr std::size_t kPortion = 64;
+
+struct TabulatedRay {
+  IntegerLine line;  // from voxel (0, 0, 0)
+  QuantisedDirection direction;
+  std::uint32_t place;  // along a curve through all directions of its table
+};
+
+struct Packet {
+  std::int32_t orientation;
+  std::array<TabulatedRay, kPacketRays> rays;
+  std::size_t count;  // of rays; the others are copies of the last
+
+  std::uint32_t place() const { return rays[count / 2].place; }
+};
+
+// The place of a direction along Morton's curve: those that are near each other on it are near each
+// other in direction.
+std::uint32_t place_of(const IntegerLine& line) {
+  constexpr int kBits = 11;
+  constexpr int kDropped = IntegerLine::kFractionBits + 1 - kBits;
+  std::uint32_t place = 0;
+  for (int across = 1; across <= 2; ++across) {
+    const std::int32_t slope = line.slope[(line.driving_axis + across) % 3];
+    const auto cell =
+        static_cast<std::uint32_t>(slope + (1 << IntegerLine::kFractionBits)) >> kDropped;
+    for (int bit = 0; bit <= kBits; ++bit) place |= (cell >> bit & 1) << (2 * bit + across - 1);
+  }
+  return place;
+}
+
+// The rays of an orientation, by driving axis and sign, and in packets of neighbours.
+std::array<std::vector<Packet>, 6> packets_of(const RayTable& rays, const Orientation& orientation,
+                                              std::int32_t number, double reach) {
+  const Eigen::Matrix3d rotation =
+      world_from_sensor_rotation(orientation.pan_rad, orientation.tilt_rad);
+  std::array<std::vector<TabulatedRay>, 6> tabulated;
+  for (int v = 0; v < rays.rows(); ++v) {
+    for (int u = 0; u < rays.columns(); ++u) {
+      const Eigen::Vector3d direction = rotation * rays.ray(u, v);
+      const IntegerLine line = line_along(VoxelIndex::Zero(), direction, reach);
+      tabulated[static_cast<std::size_t>(2 * line.driving_axis + (line.direction < 0))].push_back(
+          {line, quantise_direction(direction), place_of(line)});
+    }
+  }
+  std::array<std::vector<Packet>, 6> packets;
+  for (std::size_t table = 0; table < tabulated.size(); ++table) {
+    auto& sorted = tabulated[table];
+    std::stable_sort(
+        sorted.begin(), sorted.end(),
+        [](const TabulatedRay& a, const TabulatedRay& b) { return a.place < b.place; });
+    for (std::size_t begin = 0; begin < sorted.size(); begin += kPacketRays) {
+      Packet packet{number, {}, std::min(kPacketRays, sorted.size() - begin)};
+      for (std::size_t i = 0; i < kPacketRays; ++i) {
+        packet.rays[i] = sorted[begin + std::min(i, packet.count - 1)];
+      }
+      packets[table].push_back(packet);
+    }
+  }
+  return packets;
+}
+
+void append(const Packet& packet, RayBundle& bundle) {
+  bundle.group.push_back(packet.orientation);
+  RayBundle::Packet& columns = bundle.packets.emplace_back();
+  for (std::size_t i = 0; i < kPacketRays; ++i) {
+    const IntegerLine& line = packet.rays[i].line;
+    columns.slope1[i] = line.slope[(line.driving_axis + 1) % 3];
+    columns.slope2[i] = line.slope[(line.driving_axis + 2) % 3];
+    columns.reach[i] = i < packet.count ? line.steps : -1;
+  }
+}
+
+}  // namespace
+
+FastViewPredictor::FastViewPredictor(const PredictionRaster& raster, double voxel_size_m,
+                                     std::vector<Orientation> orientations, bool counts_quality,
+                                     int threads)
+    : RasterViewPredictor(raster, voxel_size_m, std::move(orientations), counts_quality),
+      rays_per_view_(static_cast<std::int64_t>(raster.rays.pixels())),
+      packets_of_(this->orientations().size()),
+      workspaces_(static_cast<std::size_t>(std::max(threads, 1))) {
+  if (threads < 1) throw std::invalid_argument("a view predictor needs a thread");
+  make_tables(raster, voxel_size_m);
+}
+
+void FastViewPredictor::make_tables(const PredictionRaster& raster, double voxel_size_m) {
+  std::array<std::vector<Packet>, 6> packets;
+  for (std::size_t i = 0; i < orientations().size(); ++i) {
+    const auto of_view = packets_of(raster.rays, orientations()[i], static_cast<std::int32_t>(i),
+                                    prediction_reach(raster, voxel_size_m));
+    for (std::size_t table = 0; table < packets.size(); ++table) {
+      packets[table].insert(packets[table].end(), of_view[table].begin(), of_view[table].end());
+    }
+  }
+  for (std::size_t i = 0; i < tables_.size(); ++i) {
+    std::stable_sort(packets[i].begin(), packets[i].end(),
+                     [](const Packet& a, const Packet& b) { return a.place() < b.place(); });
+    Table& table = tables_[i];
+    table.bundle.driving_axis = static_cast<int>(i / 2);
+    table.bundle.direction = i % 2 == 0 ? 1 : -1;
+    for (const Packet& packet : packets[i]) {
+      append(packet, table.bundle);
+      if (!counts_quality()) continue;
+      packets_of_[static_cast<std::size_t>(packet.orientation)].push_back(
+          {i, table.bundle.packets.size() - 1});
+      for (const TabulatedRay& ray : packet.rays) table.directions.push_back(ray.direction);
+    }
+    if (counts_quality()) table.occupied_at.resize(table.bundle.rays());
+  }
+}
+
+void FastViewPredictor::prepare(const VoxelMap& map) {
+  if (field_ && field_->window() == map.window()) return;
+  field_.emplace(map, threads());
+  surfaces_ = SurfaceTable();
+  if (!counts_quality()) return;
+  std::vector<std::uint32_t> slots;
+  for (std::size_t slot = 0; slot < map.labels().size(); ++slot) {
+    if (map.labels()[slot] == Label::Occupied) slots.push_back(static_cast<std::uint32_t>(slot));
+  }
+  surfaces_.update(map, *field_, slots);
+}
+
+void FastViewPredictor::map_changed(const VoxelMap& map,
+                                    std::span<const std::uint32_t> changed_slots,
+                                    std::span<const std::uint32_t> updated_surfaces) {
+  if (!field_ || field_->window() != map.window()) {
+    prepare(map);
+    return;
+  }
+  field_->update(map, changed_slots);
+  if (!counts_quality()) return;
+  // A voxel may become Occupied by points that had no normal, and so without surface data.
+  surfaces_.update(map, *field_, changed_slots);
+  surfaces_.update(map, *field_, updated_surfaces);
+}
+
+void FastViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
+                                std::span<ViewCounts> per_orientation) {
+  predict_all(map, {&sensor, 1}, per_orientation);
+}
+
+void FastViewPredictor::predict_all(const VoxelMap& map, std::span<const VoxelIndex> sensors,
+                                    std::span<ViewCounts> counts,
+                                    const std::function<void()>& meanwhile) {
+  const std::size_t views = orientations().size();
+  check_count(sensors.size(), counts.size());
+  for (const VoxelIndex& sensor : sensors) check_arguments(map, sensor, views);
+  if (sensors.empty()) {
+    meanwhile();
+    return;
+  }
+  prepare(map);
+  std::fill(counts.begin(), counts.end(), ViewCounts());
+  // The tables remember what the rays of one sensor met.
+  const std::size_t together = counts_quality() ? 1 : sensors.size();
+  for (std::size_t i = 0; i < sensors.size(); i += together) {
+    predict_together(
+        sensors.subspan(i, together), counts.subspan(i * views, together * views),
+        i == 0 ? meanwhile : [] {});
+  }
+}
+
+void FastViewPredictor::fill_queues(std::size_t jobs) {
+  if (queues_.size() < jobs) queues_ = std::vector<PacketQueue>(jobs);
+  for (std::size_t thread = 0; thread < workspaces_.size(); ++thread) {
+    const std::size_t first = first_job(thread, jobs);
+    const std::size_t end = first_job(thread + 1, jobs);
+    for (std::size_t job = first; job < end; ++job) {
+      const std::size_t packets = tables_[job % tables_.size()].bundle.packets.size();
+      // What others will help with: the last third of a thread's jobs, or all when it has few.
+      const bool shared = end - first < 3 || 3 * (job - first) >= 2 * (end - first);
+      const std::size_t portion = threads() == 1 ? packets : shared ? kPortion : (packets + 1) / 2;
+      queues_[job].refill(packets, portion);
+    }
+  }
+}
+
+void FastViewPredictor::predict_together(std::span<const VoxelIndex> sensors,
+                                         std::span<ViewCounts> counts,
+                                         const std::function<void()>& meanwhile) {
+  fill_queues(sensors.size() * tables_.size());
+  std::size_t team = 1;  // there can be fewer threads than were asked for
+  std::exception_ptr thrown;
+#pragma omp parallel num_threads(threads()) if (threads() > 1)
+  {
+#pragma omp master
+    {
+      team = static_cast<std::size_t>(omp_get_num_threads());
+      try {
+        meanwhile();
+      } catch (...) {
+        thrown = std::current_exception();
+      }
+    }
+    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+    Workspace& workspace = workspaces_[thread];
+    workspace.counts.assign(counts.size(), RayCounts());
+    do_jobs(sensors, thread, workspace);
+    if (counts_quality()) {
+#pragma omp barrier
+#pragma omp for schedule(dynamic)
+      for (std::size_t i = 0; i < counts.size(); ++i) {
+        count_improvements(i, workspace, counts[i]);
+      }
+    }
+  }
+  if (thrown) std::rethrow_exception(thrown);
+  add_up(std::span(workspaces_).first(team), counts);
+}
+
+void FastViewPredictor::do_jobs(std::span<const VoxelIndex> sensors, std::size_t thread,
+                                Workspace& workspace) {
+  const std::size_t views = orientations().size();
+  const std::size_t jobs = sensors.size() * tables_.size();
+  const std::size_t first = first_job(thread, jobs);
+  for (std::size_t i = 0; i < jobs; ++i) {
+    const std::size_t job = (first + i) % jobs;
+    const std::size_t sensor = job / tables_.size();
+    if (queues_[job].empty()) continue;
+    cast(tables_[job % tables_.size()], queues_[job], sensors[sensor],
+         &workspace.counts[sensor * views]);
+  }
+}
+
+void FastViewPredictor::add_up(std::span<const Workspace> workspaces,
+                               std::span<ViewCounts> counts) const {
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    ViewCounts& view = counts[i];
+    for (const Workspace& workspace : workspaces) {
+      view.occupied += workspace.counts[i].occupied;
+      view.occlusion_plane += workspace.counts[i].occlusion_plane;
+      view.unseen += workspace.counts[i].unseen;
+    }
+    view.open = rays_per_view_ - view.occupied - view.occlusion_plane - view.unseen;
+  }
+}
+
+void FastViewPredictor::cast(Table& table, PacketQueue& queue, const VoxelIndex& sensor,
+                             RayCounts* counts) const {
+  RayOutcomes outcomes;
+  outcomes.counts = counts;
+  if (counts_quality()) outcomes.occupied_at = table.occupied_at.data();
+  cast_bundle(field_->bytes(), field_->shifts(), static_cast<std::int32_t>(field_->offset(sensor)),
+              field_->steps_from(sensor), table.bundle, queue, outcomes);
+}
+
+void FastViewPredictor::count_improvements(std::size_t orientation, Workspace& workspace,
+                                           ViewCounts& counts) const {
+  for (const auto& [number, packet] : packets_of_[orientation]) {
+    const std::int32_t* const occupied_at = &tables_[number].occupied_at[packet * kPacketRays];
+    const QuantisedDirection* const rays = &tables_[number].directions[packet * kPacketRays];
+    for (std::size_t i = 0; i < kPacketRays; ++i) {
+      if (occupied_at[i] < 0) continue;
+      const std::uint32_t surface = surfaces_.number_at(static_cast<std::size_t>(occupied_at[i]));
+      workspace.improvement.add(surface, quantised_cosine(surfaces_[surface].normal, rays[i]));
+    }
+  }
+  workspace.improvement.finish(surfaces_, counts);
+}
+
+}  // namespace nextview

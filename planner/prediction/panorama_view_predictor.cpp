@@ -1,0 +1,194 @@
+#include "planner/prediction/panorama_view_predictor.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "sensor/sensor_pose.h"
+
+namespace nextview {
+
+namespace {
+
+constexpr int kSide = PanoramaViewPredictor::kFaceSide;
+constexpr double kQuarter = std::numbers::pi / 4.0;
+
+// A cell of the panorama: a face of the cube (2 axis + (sign < 0)) and a row and column on it.
+struct Cell {
+  int face;
+  int row;
+  int column;
+};
+
+// Cells are numbered in tiles of 8 x 8, a word each, and in quarters of 4 x 4 inside, so that a
+// word's cells, and a vector's rays, are neighbours.
+int cell_number(const Cell& cell) {
+  const int tile = (cell.face * (kSide / 8) + cell.row / 8) * (kSide / 8) + cell.column / 8;
+  const int quarter = cell.row % 8 / 4 * 2 + cell.column % 8 / 4;
+  return tile * 64 + quarter * 16 + cell.row % 4 * 4 + cell.column % 4;
+}
+
+Eigen::Vector3d cell_direction(const Cell& cell) {
+  const auto slope = [](int i) { return std::tan(kQuarter * ((2 * i + 1.0) / kSide - 1.0)); };
+  const int axis = cell.face / 2;
+  Eigen::Vector3d direction;
+  direction[axis] = cell.face % 2 == 0 ? 1.0 : -1.0;
+  direction[(axis + 1) % 3] = slope(cell.column);
+  direction[(axis + 2) % 3] = slope(cell.row);
+  return direction.normalized();
+}
+
+Cell cell_of(const Eigen::Vector3d& direction) {
+  int axis = 0;
+  direction.cwiseAbs().maxCoeff(&axis);
+  const double depth = std::abs(direction[axis]);
+  const auto place = [depth](double across) {
+    const double angle = std::atan(across / depth);
+    return std::clamp(static_cast<int>((angle / kQuarter + 1.0) * kSide / 2.0), 0, kSide - 1);
+  };
+  return {2 * axis + (direction[axis] < 0.0), place(direction[(axis + 2) % 3]),
+          place(direction[(axis + 1) % 3])};
+}
+
+std::vector<RayBundle> cube_faces(double reach) {
+  std::vector<RayBundle> faces(6);
+  for (int face = 0; face < 6; ++face) {
+    RayBundle& bundle = faces[static_cast<std::size_t>(face)];
+    bundle.driving_axis = face / 2;
+    bundle.direction = face % 2 == 0 ? 1 : -1;
+    constexpr auto kRays = static_cast<std::size_t>(kSide * kSide);
+    bundle.packets.resize(kRays / RayBundle::kPacketRays);
+    bundle.group.resize(kRays / RayBundle::kPacketRays);
+    for (int row = 0; row < kSide; ++row) {
+      for (int column = 0; column < kSide; ++column) {
+        const Cell cell{face, row, column};
+        const auto ray = static_cast<std::size_t>(cell_number(cell) - face * kSide * kSide);
+        const IntegerLine line = line_along(VoxelIndex::Zero(), cell_direction(cell), reach);
+        // Rounding can make a cell at the very rim a tie between two driving axes, but no other
+        // axis ever advances more than the face's.
+        RayBundle::Packet& packet = bundle.packets[ray / RayBundle::kPacketRays];
+        const std::size_t place = ray % RayBundle::kPacketRays;
+        packet.slope1[place] = line.slope[(bundle.driving_axis + 1) % 3];
+        packet.slope2[place] = line.slope[(bundle.driving_axis + 2) % 3];
+        packet.reach[place] = line.steps;
+      }
+    }
+  }
+  return faces;
+}
+
+}  // namespace
+
+PanoramaViewPredictor::PanoramaViewPredictor(const PredictionRaster& raster, double voxel_size_m,
+                                             std::vector<Orientation> orientations, int threads)
+    : RasterViewPredictor(raster, voxel_size_m, std::move(orientations), false),
+      rays_per_view_(static_cast<std::int64_t>(raster.rays.pixels())),
+      threads_(threads) {
+  if (threads < 1) throw std::invalid_argument("a view predictor needs a thread");
+  faces_ = cube_faces(prediction_reach(raster, voxel_size_m));
+  for (const Orientation& orientation : this->orientations()) {
+    append_view(raster.rays, orientation);
+  }
+}
+
+void PanoramaViewPredictor::append_view(const RayTable& rays, const Orientation& orientation) {
+  const Eigen::Matrix3d rotation =
+      world_from_sensor_rotation(orientation.pan_rad, orientation.tilt_rad);
+  std::vector<std::uint32_t> weight(kCells, 0);
+  for (int v = 0; v < rays.rows(); ++v) {
+    for (int u = 0; u < rays.columns(); ++u) {
+      ++weight[static_cast<std::size_t>(cell_number(cell_of(rotation * rays.ray(u, v))))];
+    }
+  }
+  const auto begin = static_cast<std::uint32_t>(weights_.size());
+  for (std::uint32_t word = 0; word < kWords; ++word) {
+    const std::uint32_t* cells = &weight[std::size_t{word} * 64];
+    const std::uint32_t largest = *std::max_element(cells, cells + 64);
+    for (std::uint32_t plane = 0; largest >> plane != 0; ++plane) {
+      WeightWord bits{word, plane, 0};
+      for (int i = 0; i < 64; ++i) {
+        bits.cells |= static_cast<std::uint64_t>(cells[i] >> plane & 1) << i;
+      }
+      if (bits.cells != 0) weights_.push_back(bits);
+    }
+  }
+  views_.push_back({begin, static_cast<std::uint32_t>(weights_.size())});
+}
+
+void PanoramaViewPredictor::map_changed(const VoxelMap& map,
+                                        std::span<const std::uint32_t> changed_slots,
+                                        std::span<const std::uint32_t>) {
+  if (field_) {
+    field_->update(map, changed_slots);
+  } else {
+    field_.emplace(map, threads_);
+  }
+}
+
+// Compiled once more for processors that count bits in one instruction.
+[[gnu::target_clones("popcnt", "default")]] ViewCounts PanoramaViewPredictor::count(
+    const Panorama& panorama, bool any_open, const WeightWord* begin, const WeightWord* end) {
+  const auto population = [](const std::vector<std::uint64_t>& bits, const WeightWord& weight) {
+    return static_cast<std::int64_t>(std::popcount(bits[weight.word] & weight.cells))
+           << weight.plane;
+  };
+  ViewCounts counts;
+  for (const WeightWord* weight = begin; weight != end; ++weight) {
+    counts.occupied += population(panorama.occupied, *weight);
+    counts.occlusion_plane += population(panorama.occlusion_plane, *weight);
+  }
+  if (!any_open) return counts;
+  for (const WeightWord* weight = begin; weight != end; ++weight) {
+    counts.unseen += population(panorama.unseen, *weight);
+  }
+  return counts;
+}
+
+bool PanoramaViewPredictor::any_is_open() const {
+  for (std::size_t i = 0; i < kWords; ++i) {
+    if (~(panorama_.occupied[i] | panorama_.occlusion_plane[i] | panorama_.unseen[i]) != 0) {
+      return true;
+    }
+  }
+  return false;
+}
+
+void PanoramaViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
+                                    std::span<ViewCounts> per_orientation) {
+  check_arguments(map, sensor, per_orientation.size());
+  if (!field_ || field_->window() != map.window()) field_.emplace(map, threads_);
+  for (auto* bits : {&panorama_.occupied, &panorama_.occlusion_plane, &panorama_.unseen}) {
+    bits->assign(kWords, 0);
+  }
+#pragma omp parallel num_threads(threads_) if (threads_ > 1)
+  {
+#pragma omp for schedule(dynamic)
+    for (std::size_t face = 0; face < faces_.size(); ++face) cast_face(face, sensor);
+    const bool any_open = any_is_open();
+#pragma omp for schedule(dynamic, 16)
+    for (std::size_t i = 0; i < views_.size(); ++i) {
+      ViewCounts& counts = per_orientation[i];
+      counts =
+          count(panorama_, any_open, &weights_[views_[i].begin], weights_.data() + views_[i].end);
+      std::int64_t& rest = any_open ? counts.open : counts.unseen;
+      rest = rays_per_view_ - counts.occupied - counts.occlusion_plane - counts.unseen;
+    }
+  }
+}
+
+void PanoramaViewPredictor::cast_face(std::size_t face, const VoxelIndex& sensor) {
+  const std::size_t word = face * kSide * kSide / 64;
+  PacketQueue packets;
+  packets.refill(faces_[face].packets.size(), faces_[face].packets.size());
+  RayOutcomes outcomes;
+  outcomes.occupied = reinterpret_cast<std::uint8_t*>(&panorama_.occupied[word]);
+  outcomes.occlusion_plane = reinterpret_cast<std::uint8_t*>(&panorama_.occlusion_plane[word]);
+  outcomes.unseen = reinterpret_cast<std::uint8_t*>(&panorama_.unseen[word]);
+  cast_bundle(field_->bytes(), field_->shifts(), static_cast<std::int32_t>(field_->offset(sensor)),
+              field_->steps_from(sensor), faces_[face], packets, outcomes);
+}
+
+}  // namespace nextview

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "mapper/voxel_map.h"
+#include "planner/prediction/free_space_field.h"
+#include "planner/prediction/view_predictor.h"
+
+namespace nextview {
+
+/// What f_quality asks of the Occupied voxels, found by where a ray ended in a FreeSpaceField:
+/// normal and quality lie densely by a surface number, and a sparse table of pages leads from an
+/// offset to the number.
+class SurfaceTable {
+ public:
+  struct Surface {
+    QuantisedDirection normal = {0, 0, 0};  ///< of the mean; zero when there is none
+    std::uint16_t quality = 0;              ///< best so far, 1/SurfaceVoxel::kQualityUnit
+  };
+
+  SurfaceTable() = default;
+
+  /// Takes the surface data of these slots of the map, those that are not Occupied left out.
+  void update(const VoxelMap& map, const FreeSpaceField& field,
+              std::span<const std::uint32_t> slots);
+
+  /// The number of the Occupied voxel at an offset of the field.
+  std::uint32_t number_at(std::size_t offset) const {
+    return (*pages_[offset / kPageSize])[offset % kPageSize];
+  }
+  const Surface& operator[](std::uint32_t number) const { return surfaces_[number]; }
+  std::size_t size() const { return surfaces_.size(); }
+
+ private:
+  static constexpr std::size_t kPageSize = 512;
+  static constexpr std::uint32_t kNone = 0xffffffff;
+  using Page = std::array<std::uint32_t, kPageSize>;
+
+  std::vector<std::unique_ptr<Page>> pages_;
+  std::vector<Surface> surfaces_;
+};
+
+/// Counts the distinct Occupied voxels of one view after the other, and what it would gain.
+class ImprovementCount {
+ public:
+  /// One ray of the view at hand met an Occupied voxel.
+  void add(std::uint32_t surface, std::int32_t cosine) {
+    if (surface >= seen_in_.size()) {
+      seen_in_.resize(surface + surface / 2 + 64, 0);
+      best_.resize(seen_in_.size());
+    }
+    if (seen_in_[surface] != view_) {
+      seen_in_[surface] = view_;
+      best_[surface] = cosine;
+      met_.push_back(surface);
+    } else if (cosine > best_[surface]) {
+      best_[surface] = cosine;
+    }
+  }
+  /// Writes the surface counts of the view and begins the next.
+  void finish(const SurfaceTable& surfaces, ViewCounts& counts);
+
+ private:
+  std::uint64_t view_ = 1;
+  std::vector<std::uint64_t> seen_in_;  // by surface: the last view that met it
+  std::vector<std::int32_t> best_;      // and its best cosine there
+  std::vector<std::uint32_t> met_;
+};
+
+}  // namespace nextview

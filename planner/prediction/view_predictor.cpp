@@ -1,0 +1,168 @@
+#include "planner/prediction/view_predictor.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+#include "sensor/sensor_pose.h"
+
+namespace nextview {
+
+PredictionRaster prediction_raster(const TiltedLineScan& sensor, const RangeLimits& limits) {
+  TiltedLineScan raster = sensor;
+  raster.columns = std::min(sensor.columns, 64);
+  raster.rows = std::min(sensor.rows, 32);
+  return {make_ray_table(raster), limits.max_m};
+}
+
+double prediction_reach(const PredictionRaster& raster, double voxel_size_m) {
+  return std::clamp(raster.range_max_m / voxel_size_m, 1.0,
+                    static_cast<double>(IntegerLine::kMaxSteps));
+}
+
+QuantisedDirection quantise_direction(const Eigen::Vector3d& direction) {
+  QuantisedDirection quantised;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    quantised[axis] = static_cast<std::int16_t>(
+        std::lround(direction[static_cast<int>(axis)] * SurfaceVoxel::kNormalUnit));
+  }
+  return quantised;
+}
+
+std::uint16_t predicted_quality(std::int32_t cosine) {
+  const std::int64_t rounded =
+      (std::int64_t{cosine} * SurfaceVoxel::kQualityUnit + (std::int64_t{1} << 27)) >> 28;
+  return static_cast<std::uint16_t>(std::min<std::int64_t>(rounded, SurfaceVoxel::kQualityUnit));
+}
+
+void ViewPredictor::check_count(std::size_t sensors, std::size_t counts) const {
+  if (counts == sensors * orientations().size()) return;
+  throw std::invalid_argument(std::to_string(counts) + " counts for " + std::to_string(sensors) +
+                              " sensors with " + std::to_string(orientations().size()) +
+                              " orientations each");
+}
+
+void ViewPredictor::predict_all(const VoxelMap& map, std::span<const VoxelIndex> sensors,
+                                std::span<ViewCounts> counts,
+                                const std::function<void()>& meanwhile) {
+  check_count(sensors.size(), counts.size());
+  meanwhile();
+  const std::size_t views = orientations().size();
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    predict(map, sensors[i], counts.subspan(i * views, views));
+  }
+}
+
+RasterViewPredictor::RasterViewPredictor(const PredictionRaster& raster, double voxel_size_m,
+                                         std::vector<Orientation> orientations, bool counts_quality)
+    : ViewPredictor(std::move(orientations), counts_quality), voxel_size_m_(voxel_size_m) {
+  if (this->orientations().empty() || raster.rays.pixels() == 0) {
+    throw std::invalid_argument("a view predictor needs orientations and rays");
+  }
+  if (!(voxel_size_m > 0.0) || !(raster.range_max_m > 0.0)) {
+    throw std::invalid_argument("a view predictor's voxel size and range must be positive");
+  }
+}
+
+void RasterViewPredictor::check_arguments(const VoxelMap& map, const VoxelIndex& sensor,
+                                          std::size_t counts) const {
+  if (!map.contains(sensor)) {
+    throw std::invalid_argument("a view cannot be predicted from outside the map's window");
+  }
+  if (counts != orientations().size() || map.grid().voxel_size_m != voxel_size_m_) {
+    throw std::invalid_argument("a view predictor was made for other orientations or voxels");
+  }
+}
+
+PlainViewPredictor::PlainViewPredictor(const PredictionRaster& raster, double voxel_size_m,
+                                       std::vector<Orientation> orientations, bool counts_quality)
+    : RasterViewPredictor(raster, voxel_size_m, std::move(orientations), counts_quality),
+      rays_per_view_(raster.rays.pixels()) {
+  const double reach = prediction_reach(raster, voxel_size_m);
+  rays_.reserve(this->orientations().size() * rays_per_view_);
+  for (const Orientation& orientation : this->orientations()) {
+    const Eigen::Matrix3d rotation =
+        world_from_sensor_rotation(orientation.pan_rad, orientation.tilt_rad);
+    for (int v = 0; v < raster.rays.rows(); ++v) {
+      for (int u = 0; u < raster.rays.columns(); ++u) {
+        const Eigen::Vector3d direction = rotation * raster.rays.ray(u, v);
+        rays_.push_back(
+            {line_along(VoxelIndex::Zero(), direction, reach), quantise_direction(direction)});
+      }
+    }
+  }
+}
+
+void PlainViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
+                                 std::span<ViewCounts> per_orientation) {
+  check_arguments(map, sensor, per_orientation.size());
+  for (std::size_t i = 0; i < per_orientation.size(); ++i) {
+    const auto rays = std::span<const Ray>(rays_).subspan(i * rays_per_view_, rays_per_view_);
+    per_orientation[i] = predict_view(map, sensor, rays);
+  }
+}
+
+ViewCounts PlainViewPredictor::predict_view(const VoxelMap& map, const VoxelIndex& sensor,
+                                            std::span<const Ray> rays) {
+  ViewCounts counts;
+  sightings_.clear();
+  for (const Ray& ray : rays) {
+    IntegerLine line = ray.line;
+    line.start = sensor;
+    const int last = std::min(line.steps, steps_inside(line, map.window()));
+    VoxelIndex voxel = sensor;
+    Label met = Label::Empty;
+    for (int k = 1; k <= last && met == Label::Empty; ++k) {
+      voxel = line.at(k);
+      met = map.label(voxel);
+    }
+    switch (met) {
+      case Label::Empty:
+        ++counts.open;
+        break;
+      case Label::Unmarked:
+      case Label::Occluded:
+        ++counts.unseen;
+        break;
+      case Label::OcclusionPlane:
+        ++counts.occlusion_plane;
+        break;
+      case Label::Occupied:
+        ++counts.occupied;
+        if (counts_quality()) {
+          const SurfaceVoxel* surface = map.surface(voxel);
+          const QuantisedDirection normal = surface == nullptr
+                                                ? QuantisedDirection{0, 0, 0}
+                                                : quantise_direction(surface->mean_normal());
+          sightings_.push_back({voxel, quantised_cosine(normal, ray.direction)});
+        }
+        break;
+    }
+  }
+  if (counts_quality()) count_improvements(map, counts);
+  return counts;
+}
+
+void PlainViewPredictor::count_improvements(const VoxelMap& map, ViewCounts& counts) {
+  // Sightings of the same voxel side by side, the best first.
+  std::sort(sightings_.begin(), sightings_.end(), [&map](const Sighting& a, const Sighting& b) {
+    const std::size_t slot_a = map.slot(a.voxel);
+    const std::size_t slot_b = map.slot(b.voxel);
+    return slot_a != slot_b ? slot_a < slot_b : a.cosine > b.cosine;
+  });
+  for (std::size_t i = 0; i < sightings_.size(); ++i) {
+    const Sighting& sighting = sightings_[i];
+    if (i > 0 && sightings_[i - 1].voxel == sighting.voxel) continue;
+    ++counts.occupied_voxels;
+    const SurfaceVoxel* surface = map.surface(sighting.voxel);
+    if (surface == nullptr) continue;
+    const int gain = predicted_quality(sighting.cosine) - surface->quality;
+    if (gain > 0) {
+      ++counts.improved_voxels;
+      counts.improvement += gain;
+    }
+  }
+}
+
+}  // namespace nextview

@@ -1,0 +1,72 @@
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <iostream>
+#include <vector>
+
+#include "logger/run_log.h"
+#include "mapper/map_builder.h"
+#include "mapper/mapper_config.h"
+#include "report/recovered_picture.h"
+
+namespace {
+
+void draw_run(const std::filesystem::path& folder, const std::filesystem::path& file, int views,
+              const nextview::PictureView& view) {
+  nextview::RunLog log(folder / "run.lcmlog", std::nullopt, nextview::RangeImages::Keep);
+  log.read_on();
+  const nextview::RunRecord& record = log.record();
+  if (!record.config()) {
+    throw nextview::LogError((folder / "run.lcmlog").string() +
+                             ": no run's configuration is in it");
+  }
+  nextview::MapBuilder builder(nextview::grid_of(*record.config()),
+                               nextview::window_of(*record.config()));
+  std::vector<nextview::SensorPose> poses;
+  for (int i = 1; i <= std::min(views, record.latest_view()); ++i) {
+    const nextview::commit_t* commit = record.commit(i);
+    if (commit == nullptr || !record.missing_of_view(i).empty()) break;
+    const auto* logged = record.range_image(i, commit->attempt);
+    builder.fold(logged->received.image);
+    poses.push_back(logged->received.image.pose);
+  }
+  write_png(recovered_picture(builder.map(), poses, view), file);
+  std::cout << file.string() << ": " << poses.size() << " views" << std::endl;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{
+      "Draws what a run has recovered (paper figure 9): Occupied voxels coloured by height, the\n"
+      "sensor's path dashed, its poses with their directions. From the log alone.\n"};
+  std::string folder;
+  std::string file;
+  int views = std::numeric_limits<int>::max();
+  nextview::PictureView view;
+  app.add_option("DIR", folder, "Folder of a run")->required()->check(CLI::ExistingDirectory);
+  app.add_option("FILE", file, "PNG file to write; default DIR/recovered.png");
+  app.add_option("--views", views, "Draw the map after this many views; default all")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--azimuth", view.azimuth_deg, "Where to look from, degrees: 0 = +x, 90 = +y")
+      ->capture_default_str();
+  app.add_option("--elevation", view.elevation_deg, "How steeply, degrees")
+      ->check(CLI::Range(1.0, 89.0))
+      ->capture_default_str();
+  app.add_option("--width", view.width, "Pixels")
+      ->check(CLI::Range(16, 8192))
+      ->capture_default_str();
+  app.add_option("--height", view.height, "Pixels")
+      ->check(CLI::Range(16, 8192))
+      ->capture_default_str();
+  CLI11_PARSE(app, argc, argv);
+  try {
+    draw_run(folder,
+             file.empty() ? std::filesystem::path(folder) / "recovered.png"
+                          : std::filesystem::path(file),
+             views, view);
+  } catch (const std::exception& error) {
+    std::cerr << "nextview_picture: " << error.what() << std::endl;
+    return 1;
+  }
+  return 0;
+}

@@ -1,0 +1,363 @@
+#include "runner/run.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cstdlib>
+#include <random>
+#include <utility>
+
+#include "planner/planner_config.h"
+#include "runner/run_signals.h"
+#include "scoring/visible_surface.h"
+
+namespace nextview {
+namespace {
+
+using std::chrono::milliseconds;
+
+double seconds_between(Run::Clock::time_point start, Run::Clock::time_point end) {
+  return std::chrono::duration<double>(end - start).count();
+}
+
+/// Tells runs apart on a bus they share; of no influence on what a run does.
+std::int64_t new_run_number() {
+  std::random_device random;
+  return static_cast<std::int64_t>((std::uint64_t{random()} << 31 ^ random()) >> 1) + 1;
+}
+
+/// Looking on and scoring must not take time from the processes that do the work: on two cores the
+/// share of a run that is waiting falls by a quarter.
+void give_way() { setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 15); }
+
+/// Asks for something again and again, ever less often.
+class Reminder {
+ public:
+  explicit Reminder(milliseconds first) : interval_(first), due_(Run::Clock::now() + first) {}
+  bool due() {
+    const auto now = Run::Clock::now();
+    if (now < due_) return false;
+    interval_ = std::min(2 * interval_, milliseconds(2000));
+    due_ = now + interval_;
+    return true;
+  }
+
+ private:
+  milliseconds interval_;
+  Run::Clock::time_point due_;
+};
+
+}  // namespace
+
+Run::Run(const RunOptions& options, RunSetup setup, const std::filesystem::path& folder,
+         Progress& progress)
+    : options_(options),
+      setup_(std::move(setup)),
+      files_(folder),
+      progress_(progress),
+      rows_(setup_.config) {
+  setup_.config.run = new_run_number();
+}
+
+Run::~Run() {
+  if (processes_) processes_->end_all();
+}
+
+FinishedRun Run::carry_out(Clock::time_point program_start) {
+  try {
+    start_up();
+    watch();
+    complete_log();
+    collect_statuses();
+  } catch (const EndsEarly& end) {
+    end_early(end);
+  }
+  return finish(program_start);
+}
+
+void Run::subscribe() {
+  bus_->on<goal_t>([this](const goal_t& goal) {
+    add(goal);
+    if (!first_goal_) first_goal_ = Clock::now();
+  });
+  bus_->on<search_t>([this](const search_t& search) { add(search); });
+  bus_->on<arrival_t>([this](const arrival_t& arrival) { add(arrival); });
+  bus_->on<range_image_t>([this](const range_image_t& part) { add(part); });
+  bus_->on<commit_t>([this](const commit_t& commit) {
+    add(commit);
+    last_commit_ = Clock::now();
+  });
+  bus_->on<stop_t>([this](const stop_t& stop) { add(stop); });
+  bus_->on<status_t>([this](const status_t& status) {
+    statuses_[status.role] = status;
+    fresh_statuses_.insert(status.role);
+  });
+  bus_->on_missing([this](const request_t& request) {
+    if (request.wanted_channel == Channel<run_config_t>::name) {
+      asked_for_config_.insert(request.asker);
+    }
+  });
+}
+
+template <class Message>
+void Run::add(const Message& message) {
+  record_.add(message);
+  last_progress_ = Clock::now();
+}
+
+template <class Condition>
+void Run::pump_until(const Condition& condition) {
+  Reminder reminder{milliseconds(5)};
+  while (!condition()) {
+    if (reminder.due()) bus_->request<status_t>(0, 0);
+    pump(milliseconds(5));
+  }
+}
+
+void Run::start_up() {
+  lcm_url_ = options_.lcm_url;
+  if (const char* url = std::getenv("LCM_DEFAULT_URL"); lcm_url_.empty() && url != nullptr) {
+    lcm_url_ = url;
+  }
+  if (lcm_url_.empty()) {
+    port_ = PortLock::acquire();
+    lcm_url_ = port_->lcm_url();
+  }
+  bus_ = std::make_unique<Bus>(lcm_url_, setup_.config.run, "run");
+  subscribe();
+  processes_.emplace(lcm_url_, setup_.config.run, files_.log);
+  if (options_.verbose) progress_.say("bus: " + lcm_url_ + ", run " + std::to_string(bus_->run()));
+
+  // Nothing is known about a run before its configuration is, so the run starts with it: not before
+  // all processes have asked for it, and requests are seen to arrive in the log.
+  last_progress_ = Clock::now();
+  const std::set<std::string> answering(RunProcesses::answering_roles().begin(),
+                                        RunProcesses::answering_roles().end());
+  pump_until([&] { return recording() && asked_for_config_ == answering; });
+  record_.add(setup_.config);
+  bus_->publish(setup_.config);
+  last_progress_ = Clock::now();
+  if (!options_.no_coverage) start_scoring();
+  // Each says so when it has loaded what it needs; only then is there somebody to hear a goal.
+  pump_until([&] { return fresh_statuses_ == answering; });
+  processes_->start_planner();
+  last_progress_ = Clock::now();
+}
+
+bool Run::recording() {
+  if (!log_ && std::filesystem::exists(files_.log)) {
+    log_.emplace(files_.log, setup_.config.run, RangeImages::OnlyCount);
+  }
+  if (log_) log_->read_on();
+  return log_ && log_->counters().ours > 0;
+}
+
+void Run::start_scoring() {
+  std::promise<VisibleSurface> promise;
+  visible_coming_ = promise.get_future();
+  scoring_ = std::jthread([scene = setup_.scene, config = setup_.config,
+                           promise = std::move(promise)](const std::stop_token& stop) mutable {
+    give_way();
+    promise.set_value(visible_surface(*scene, start_pose_of(config).position_m, reach_of(config),
+                                      config.range_max_m, stop));
+  });
+}
+
+void Run::watch() {
+  give_way();  // from here on this process only looks on
+  Reminder reminder{milliseconds(300)};
+  auto reminded_since = last_progress_;
+  while (!record_.stop() || !record_.missing().empty()) {
+    pump(milliseconds(20));
+    make_rows();
+    if (reminded_since != last_progress_) {
+      reminded_since = last_progress_;
+      reminder = Reminder(milliseconds(300));
+    }
+    // Most often nothing is lost and somebody works; asking costs little, and else nobody would
+    // make good what only this listener has missed.
+    if (reminder.due()) {
+      for (const MissingMessage& missing : record_.missing()) request(missing);
+    }
+  }
+  make_rows();
+}
+
+void Run::make_rows() {
+  if (!visible_ && visible_coming_.valid() &&
+      visible_coming_.wait_for(milliseconds(0)) == std::future_status::ready) {
+    visible_ = visible_coming_.get();
+    rows_.set_visible(*visible_);
+  }
+  while (const ViewRow* row = rows_.advance(record_)) progress_.show(*row);
+}
+
+void Run::complete_log() {
+  // The recorder writes out what it holds when something more comes: the request and its answers.
+  bus_->request<status_t>(0, 0);
+  Reminder reminder{milliseconds(20)};
+  last_progress_ = Clock::now();
+  for (;;) {
+    const std::int64_t had = log_->counters().ours;
+    log_->read_on();
+    const std::vector<MissingMessage> missing = log_->record().missing();
+    if (missing.empty()) return;
+    if (log_->counters().ours != had) last_progress_ = Clock::now();
+    if (reminder.due()) {
+      for (const MissingMessage& message : missing) request(message);
+    }
+    try {
+      pump(milliseconds(5));
+    } catch (const EndsEarly& end) {
+      if (end.reason != StopReason::NoAnswer) throw;
+      throw EndsEarly{end.reason, "the log still lacks " + describe(missing.front()) +
+                                      ", however often it was asked for"};
+    }
+  }
+}
+
+void Run::collect_statuses() {
+  fresh_statuses_.clear();
+  Reminder reminder{milliseconds(50)};
+  bus_->request<status_t>(0, 0);
+  // Only for the summary, so a process that does not answer is not waited for very long.
+  const auto until = Clock::now() + milliseconds(1000);
+  const std::size_t roles = RunProcesses::answering_roles().size() + 1;  // and the planner
+  while (fresh_statuses_.size() < roles && Clock::now() < until) {
+    pump(milliseconds(5));
+    if (reminder.due()) bus_->request<status_t>(0, 0);
+  }
+}
+
+void Run::end_early(const EndsEarly& end) {
+  ended_early_ = end;
+  if (!processes_ || !bus_) return;
+  processes_->end_planner();
+  try {
+    while (bus_->handle(milliseconds(20))) {
+    }
+    make_rows();
+    if (record_.stop() || !log_ || !record_.config()) return;
+    // The planner has not ended the run, so that its log says how it ended somebody else must.
+    log_->read_on();
+    stop_t stop{};
+    stop.views = log_->record().complete_views();
+    stop.stop_reason = std::string(to_string(end.reason));
+    stop.detail = end.detail;
+    bus_->publish(stop);
+    const auto until = Clock::now() + milliseconds(1000);
+    while (!log_->record().stop() && Clock::now() < until) {
+      bus_->handle(milliseconds(5));
+      log_->read_on();
+    }
+    make_rows();
+  } catch (const std::exception& error) {
+    progress_.say(std::string("the end of the run could not be logged: ") + error.what());
+  }
+}
+
+FinishedRun Run::finish(Clock::time_point program_start) {
+  FinishedRun run;
+  if (processes_) {
+    processes_->end_all();
+    const auto lines = processes_->take_lines();  // lcm-logger says goodbye
+    if (options_.verbose) {
+      for (const std::string& line : lines) progress_.say(line);
+    }
+    run.peak_memory_bytes = processes_->peak_memory_bytes();
+  }
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  run.peak_memory_bytes["run"] = std::int64_t{usage.ru_maxrss} * 1024;
+  Reminder patience{milliseconds(1000)};
+  bool explained = false;
+  while (visible_coming_.valid() && noted_signal() == 0 && !ended_early_) {
+    visible_coming_.wait_for(milliseconds(50));
+    make_rows();
+    if (visible_coming_.valid() && !explained && patience.due()) {
+      progress_.say("working out how much of the scene can be seen at all, for the coverage");
+      explained = true;
+    }
+  }
+  scoring_.request_stop();
+  if (record_.config()) rows_.complete(record_);
+
+  run.config = setup_.config;
+  run.rows = rows_.rows();
+  run.visible = visible_;
+  run.statuses = statuses_;
+  run.lcm_url = lcm_url_;
+  if (log_) run.log = log_->counters();
+  for (const auto& [key, arrival] : record_.arrivals()) run.collisions += arrival.arrived ? 0 : 1;
+  if (ended_early_) {
+    run.stop_reason = ended_early_->reason;
+    run.stop_detail = ended_early_->detail;
+  } else if (const auto reason = stop_reason_from_string(record_.stop()->stop_reason)) {
+    run.stop_reason = *reason;
+    run.stop_detail = record_.stop()->detail;
+  }
+  if (first_goal_) run.start_up_s = seconds_between(program_start, *first_goal_);
+  if (first_goal_ && last_commit_) {
+    run.first_goal_to_last_commit_s = seconds_between(*first_goal_, *last_commit_);
+  }
+  run.wall_s = seconds_between(program_start, Clock::now());
+  return run;
+}
+
+void Run::pump(milliseconds timeout) {
+  bus_->handle(timeout);
+  check_on_processes();
+  if (noted_signal() != 0) {
+    throw EndsEarly{StopReason::Interrupted, "The run was interrupted by a signal."};
+  }
+  if (seconds_between(last_progress_, Clock::now()) > options_.patience_s) {
+    throw EndsEarly{StopReason::NoAnswer, waited_for()};
+  }
+}
+
+void Run::check_on_processes() {
+  if (!processes_) return;
+  const std::optional<std::string> casualty = processes_->casualty();
+  for (const std::string& line : processes_->take_lines()) progress_.say(line);
+  if (casualty) throw EndsEarly{StopReason::ProcessDied, *casualty};
+}
+
+void Run::request(const MissingMessage& missing) {
+  for_each_channel([&]<class Message>() {
+    if (missing.channel == Channel<Message>::name) {
+      bus_->request<Message>(missing.view, missing.attempt);
+    }
+  });
+}
+
+std::string Run::waited_for() const {
+  const std::string for_so_long =
+      " for " + std::to_string(std::lround(options_.patience_s)) + " s (--patience)";
+  if (!record_.config()) {
+    std::string who;
+    for (const std::string& role : RunProcesses::answering_roles()) {
+      if (!asked_for_config_.contains(role)) who += (who.empty() ? "" : ", ") + role;
+    }
+    if (who.empty()) who = "lcm-logger, which has recorded nothing";
+    return "nothing was heard of " + who + for_so_long;
+  }
+  for (const std::string& role : RunProcesses::answering_roles()) {
+    if (!statuses_.contains(role)) return role + " did not get ready" + for_so_long;
+  }
+  const int view = record_.latest_view();
+  int attempt = 0;
+  while (record_.goal(view, attempt + 1)) ++attempt;
+  const std::string of_view = " of view " + std::to_string(view);
+  const arrival_t* arrival = record_.arrival(view, attempt);
+  if (record_.commit(view) || view == 0 || (arrival && !arrival->arrived)) {
+    return "the planner gave no goal after view " + std::to_string(view) + for_so_long;
+  }
+  if (!arrival) return "base_sim did not answer the goal" + of_view + for_so_long;
+  if (!record_.range_image(view, attempt)) {
+    return "sensor_sim sent no range image" + of_view + for_so_long;
+  }
+  return "the mapper did not commit the range image" + of_view + for_so_long;
+}
+
+}  // namespace nextview

@@ -1,0 +1,285 @@
+#include "runner/run_options.h"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+namespace nextview {
+namespace {
+
+constexpr double kNoLimit = std::numeric_limits<double>::max();
+
+/// Accepts finite numbers in [least, most]; CLI::Range would let NaN through.
+CLI::Validator number_in(double least, double most) {
+  const auto text = [](double value) {
+    std::ostringstream out;
+    out << value;
+    return out.str();
+  };
+  std::string range = "from " + text(least) + " to " + text(most);
+  if (least == -kNoLimit && most == kNoLimit) {
+    range = "and finite";
+  } else if (most == kNoLimit) {
+    range = "of " + text(least) + " or more";
+  }
+  return CLI::Validator(
+      [least, most, range](std::string& given) {
+        double value = 0.0;
+        if (!CLI::detail::lexical_cast(given, value) || !std::isfinite(value) || value < least ||
+            value > most) {
+          return "must be a number " + range + ", not " + given;
+        }
+        return std::string();
+      },
+      "");
+}
+
+CLI::Validator any_number() { return number_in(-kNoLimit, kNoLimit); }
+CLI::Validator length_m() { return number_in(0.0001, 1e5); }
+
+void add_scene_options(CLI::App& app, RunOptions& options) {
+  const std::string group = "Scene";
+  app.add_option("SCENE", options.scene,
+                 "boxes, columns, another folder of scenes/, or a CAD file of any format assimp "
+                 "reads (with --start)")
+      ->capture_default_str();
+  app.add_option(
+         "--start", options.start_m,
+         "Where the sensor starts: X Y Z in metres, world frame; default: as the scene says")
+      ->expected(3)
+      ->check(any_number())
+      ->group(group);
+  app.add_option("--start-pan", options.start_pan_deg,
+                 "Where it looks at first, degrees: 0 along +y, 90 along -x; default: as the scene "
+                 "says")
+      ->check(number_in(-360.0, 360.0))
+      ->group(group);
+  app.add_option("--start-tilt", options.start_tilt_deg, "Its elevation at first, degrees")
+      ->check(number_in(-90.0, 90.0))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--unit", options.unit,
+                 "Length of one unit of the CAD file: m, cm, mm, in, ft or metres; default: as the "
+                 "file says, else m")
+      ->group(group);
+  app.add_option("--up", options.up,
+                 "The CAD file's axis that points up: x, y or z; default: as the file says, else z")
+      ->group(group);
+  app.add_option("--scenes", options.scenes_folder, "Folder of the scenes known by name")
+      ->capture_default_str()
+      ->group(group);
+}
+
+void add_run_options(CLI::App& app, RunOptions& options) {
+  const std::string group = "Run";
+  app.add_option("--seed", options.seed, "The same seed gives the same run")
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--views", options.views,
+                 "End after this many views; default 60, with --quality 300")
+      ->check(number_in(1, 1e6))
+      ->group(group);
+  app.add_flag("--quality", options.quality,
+               "Look for quality too (paper eq. 4) and go on until every voxel has it")
+      ->group(group);
+  app.add_option("--out", options.out,
+                 "Folder for run.lcmlog, views.csv and summary.json; default "
+                 "runs/SCENE-seedN-DATE")
+      ->group(group);
+  app.add_option("--runs", options.runs_folder, "Folder in which that default folder is made")
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--lcm-url", options.lcm_url,
+                 "LCM URL to meet on; default: LCM_DEFAULT_URL, else a free port of the run's own")
+      ->group(group);
+  app.add_option("--patience", options.patience_s,
+                 "Seconds without anything happening after which the run gives up")
+      ->check(number_in(0.1, 1e6))
+      ->capture_default_str()
+      ->group(group);
+  app.add_flag("--no-coverage", options.no_coverage,
+               "Do not work out surface_coverage, which takes minutes in a large building")
+      ->group(group);
+  app.add_flag("--verbose", options.verbose, "Say more: port, processes, counters, timings")
+      ->group(group);
+}
+
+void add_sensor_options(CLI::App& app, RunOptions& options) {
+  const std::string group = "Sensor (tilted line scan, paper eq. 5)";
+  app.add_option("--columns", options.columns, "Columns of a range image")
+      ->check(number_in(2, 4096))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--rows", options.rows, "Rows of a range image")
+      ->check(number_in(2, 4096))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--aperture", options.aperture_deg,
+                 "Horizontal aperture, degrees; the vertical one follows from it")
+      ->check(number_in(1.0, 89.0))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--range-min", options.range.min_m, "Nearer surfaces give no valid range, m")
+      ->check(number_in(0.0, 1e5))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--range-max", options.range.max_m, "Farther surfaces give no return, m")
+      ->check(length_m())
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--range-noise-m", options.range_noise_m,
+                 "Standard deviation of Gaussian range noise, m")
+      ->check(number_in(0.0, 100.0))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--scan-duration", options.scan_duration_s, "Simulated time a scan takes, s")
+      ->check(number_in(0.0, 1e6))
+      ->capture_default_str()
+      ->group(group);
+}
+
+void add_base_options(CLI::App& app, RunOptions& options) {
+  const std::string group = "Base (simulated time)";
+  app.add_option("--body-radius", options.body_radius_m,
+                 "The body is a sphere of this radius about the sensor, m")
+      ->check(length_m())
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--lift-min", options.lift_min_m,
+                 "Lowest z of the sensor, m; default: the scene's lowest + body radius")
+      ->check(any_number())
+      ->group(group);
+  app.add_option("--lift-max", options.lift_max_m,
+                 "Highest z of the sensor, m; default: the scene's highest - body radius, at most "
+                 "2.8 m above its lowest")
+      ->check(any_number())
+      ->group(group);
+  app.add_option("--base-speed", options.base_speed_m_s, "m/s")
+      ->check(number_in(1e-6, 1e6))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--lift-speed", options.lift_speed_m_s, "m/s")
+      ->check(number_in(1e-6, 1e6))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--turn-speed", options.turn_speed_deg_s, "Of pan and of tilt, degrees/s")
+      ->check(number_in(1e-6, 1e6))
+      ->capture_default_str()
+      ->group(group);
+}
+
+void add_map_options(CLI::App& app, RunOptions& options) {
+  const std::string group = "Voxel map";
+  app.add_option("--voxel-size", options.voxel_size_m, "Side of a voxel, m")
+      ->check(number_in(0.001, 10.0))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--margin-voxels", options.margin_voxels,
+                 "Voxels the map reaches beyond the scene on every side")
+      ->check(number_in(0, 1000))
+      ->capture_default_str()
+      ->group(group);
+}
+
+void add_planner_options(CLI::App& app, RunOptions& options) {
+  const std::string group = "Planner";
+  app.add_option("--clearance", options.clearance_m,
+                 "Nothing known may be nearer to the sensor and its path, m (paper: 4 voxels)")
+      ->check(number_in(0.0, 100.0))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--departure", options.departure_m,
+                 "Unknown space this near to where the sensor stands does not hold it back, m")
+      ->check(number_in(0.0, 5.0))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--directions", options.directions,
+                 "Orientations tried at every position: 20, 80, 320 or 1280")
+      ->check(CLI::IsMember({20, 80, 320, 1280}))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--threads", options.threads,
+                 "Threads the planner may use; the result does not depend on it")
+      ->check(number_in(1, 256))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--step-min", options.step_min_m,
+                 "Least distance of the first simplex's vertices from the sensor, m")
+      ->check(length_m())
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--step-max", options.step_max_m, "Largest such distance, m")
+      ->check(length_m())
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--fitness-tolerance", options.fitness_tolerance,
+                 "The search stops when the simplex's fitness range falls below")
+      ->check(number_in(0.0, 2.0))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--max-evaluations", options.max_evaluations,
+                 "... or after this many positions, each in all orientations")
+      ->check(number_in(4, 1200))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--max-attempts", options.max_attempts,
+                 "Goals of one view the base may refuse before the run gives up")
+      ->check(number_in(1, 1e6))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--quality-threshold", options.quality_threshold,
+                 "With --quality: the quality every voxel should reach, 0 to 1")
+      ->check(number_in(0.0, 1.0))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--stop-window", options.stop_window_views,
+                 "The run ends when over this many views ...")
+      ->check(number_in(1, 1e6))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--stop-new-area", options.stop_new_area_m2,
+                 "... less than this area became newly Occupied, m2")
+      ->check(number_in(0.0, 1e6))
+      ->capture_default_str()
+      ->group(group);
+}
+
+}  // namespace
+
+std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_status) {
+  RunOptions options;
+  options.scenes_folder = NEXTVIEW_SCENES_FOLDER;
+  CLI::App app{
+      "Recovers a scene by itself: scans it from the start, then again and again from the next\n"
+      "best view, until there is nothing left to see. Starts sensor_sim, base_sim, mapper, "
+      "planner\n"
+      "and lcm-logger on a bus of their own, watches them, scores what they do against the CAD\n"
+      "model, and leaves run.lcmlog, views.csv and summary.json.\n"};
+  app.footer(
+      "Examples:\n"
+      "  ./run                                  the paper's first room, 60 views\n"
+      "  ./run columns --seed 3 --quality       the second one, for quality, 300 views\n"
+      "  ./run flat.dae --start 1.0 2.5 1.2     a CAD model of yours\n"
+      "  ./run hall.stl --unit cm --up y --start 4 4 1.5 --voxel-size 0.05\n\n"
+      "Exit status: 0 the stop rule or the number of views was reached; 1 the run could not\n"
+      "start; 3 no feasible goal; 4 mapper and planner hold different maps; 5 somebody did not\n"
+      "answer; 6 a process died; 130 or 143 ended by SIGINT or SIGTERM, the log being readable;\n"
+      "above 100 otherwise: a wrong command line.");
+  app.get_formatter()->column_width(30);
+  add_scene_options(app, options);
+  add_run_options(app, options);
+  add_sensor_options(app, options);
+  add_base_options(app, options);
+  add_map_options(app, options);
+  add_planner_options(app, options);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    exit_status = app.exit(error);
+    return std::nullopt;
+  }
+  return options;
+}
+
+}  // namespace nextview

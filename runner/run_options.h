@@ -1,0 +1,72 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base_sim/base.h"
+#include "planner/next_view.h"
+#include "planner/termination.h"
+#include "sensor/sensor_geometry.h"
+
+namespace nextview {
+
+/// What a user can say about a run, with the defaults. Angles in degrees, as typed.
+struct RunOptions {
+  std::string scene = "boxes";
+  std::string scenes_folder;
+  std::optional<std::string> unit;
+  std::optional<std::string> up;
+  std::vector<double> start_m;  ///< three numbers, or empty: what the scene says
+  std::optional<double> start_pan_deg;
+  double start_tilt_deg = 0.0;
+
+  std::int64_t seed = 1;
+  std::optional<int> views;  ///< 60, with quality 300
+  bool quality = false;
+  std::string out;  ///< folder of the run; empty: a new one in runs_folder
+  std::string runs_folder = "runs";
+
+  int columns = 64;
+  int rows = 30;
+  double aperture_deg = 60.0;
+  RangeLimits range;
+  double range_noise_m = 0.0;
+  double scan_duration_s = 1.0;
+
+  double body_radius_m = BaseLimits{}.body_radius_m;
+  std::optional<double> lift_min_m;
+  std::optional<double> lift_max_m;
+  double base_speed_m_s = BaseLimits{}.base_speed_m_s;
+  double lift_speed_m_s = BaseLimits{}.lift_speed_m_s;
+  double turn_speed_deg_s = 45.0;
+
+  double voxel_size_m = 0.10;
+  int margin_voxels = 1;
+
+  double clearance_m = FeasibilityParameters{}.clearance_m;
+  double departure_m = FeasibilityParameters{}.departure_m;
+  int directions = 20;
+  int threads = 1;
+  double step_min_m = PlannerParameters{}.step_min_m;
+  double step_max_m = PlannerParameters{}.step_max_m;
+  double fitness_tolerance = PlannerParameters{}.fitness_tolerance;
+  int max_evaluations = PlannerParameters{}.max_evaluations;
+  int max_attempts = 5;
+  double quality_threshold = StopParameters{}.quality_threshold;
+  int stop_window_views = StopParameters{}.stop_window_views;
+  double stop_new_area_m2 = StopParameters{}.stop_new_area_m2;
+
+  std::string lcm_url;  ///< empty: LCM_DEFAULT_URL, else a free port of its own
+  double patience_s = 60.0;
+  bool no_coverage = false;  ///< surface_coverage is not worked out
+  bool verbose = false;
+};
+
+/// Reads the command line.
+/// @return the options; or, when the program has nothing more to do (--help, or a line that cannot
+///         be right, which has been printed), its exit status in `exit_status`
+std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_status);
+
+}  // namespace nextview

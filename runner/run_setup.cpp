@@ -1,0 +1,221 @@
+#include "runner/run_setup.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <numbers>
+#include <optional>
+#include <utility>
+
+#include "base_sim/base_sim_process.h"
+#include "lcmtypes/validate.h"
+#include "mapper/mapper_config.h"
+#include "planner/planner_config.h"
+#include "scene/enclosure.h"
+#include "scene/scene_catalog.h"
+
+namespace nextview {
+namespace {
+
+constexpr double kRadPerDegree = std::numbers::pi / 180.0;
+
+std::string two_decimals(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2f", value);
+  return text;
+}
+
+std::string_view name_of(UpAxis axis) {
+  switch (axis) {
+    case UpAxis::X:
+      return "x";
+    case UpAxis::Y:
+      return "y";
+    case UpAxis::Z:
+      return "z";
+  }
+  throw std::invalid_argument("not an axis");
+}
+
+SceneOptions given_options(const RunOptions& options) {
+  SceneOptions given;
+  try {
+    if (options.unit) given.unit_m = parse_unit_m(*options.unit);
+  } catch (const std::invalid_argument& error) {
+    throw SetupError("--unit: " + std::string(error.what()));
+  }
+  try {
+    if (options.up) given.up = parse_up_axis(*options.up);
+  } catch (const std::invalid_argument& error) {
+    throw SetupError("--up: " + std::string(error.what()));
+  }
+  return given;
+}
+
+void fill_start(run_config_t& config, const RunOptions& options, const SceneDescription& scene,
+                const Eigen::AlignedBox3d& bounds) {
+  std::optional<Eigen::Vector3d> start_m = scene.start_m;
+  if (!options.start_m.empty()) start_m = Eigen::Vector3d(options.start_m.data());
+  if (!start_m) {
+    throw SetupError(scene.file.string() + " says no start position: give --start X Y Z, inside (" +
+                     two_decimals(bounds.min().x()) + " .. " + two_decimals(bounds.max().x()) +
+                     ", " + two_decimals(bounds.min().y()) + " .. " +
+                     two_decimals(bounds.max().y()) + ", " + two_decimals(bounds.min().z()) +
+                     " .. " + two_decimals(bounds.max().z()) + ") m");
+  }
+  for (int axis = 0; axis < 3; ++axis) config.start_m[axis] = (*start_m)[axis];
+  config.start_pan_rad = scene.start_pan_rad.value_or(0.0);
+  if (options.start_pan_deg) config.start_pan_rad = *options.start_pan_deg * kRadPerDegree;
+  config.start_tilt_rad = options.start_tilt_deg * kRadPerDegree;
+}
+
+void fill_sensor(run_config_t& config, const RunOptions& options) {
+  if (options.range.min_m >= options.range.max_m) {
+    throw SetupError("--range-min must be below --range-max");
+  }
+  const TiltedLineScan sensor = TiltedLineScan::with_aperture(options.columns, options.rows,
+                                                              options.aperture_deg * kRadPerDegree);
+  config.columns = sensor.columns;
+  config.rows = sensor.rows;
+  config.horizontal_aperture_rad = sensor.horizontal_aperture_rad;
+  config.vertical_aperture_rad = sensor.vertical_aperture_rad;
+  config.range_min_m = options.range.min_m;
+  config.range_max_m = options.range.max_m;
+  config.range_noise_m = options.range_noise_m;
+  config.scan_duration_s = options.scan_duration_s;
+}
+
+void fill_base(run_config_t& config, const RunOptions& options, const Eigen::AlignedBox3d& bounds) {
+  constexpr double kReach_m = 2.8;  // of the lift, above the lowest floor
+  config.body_radius_m = options.body_radius_m;
+  for (int axis = 0; axis < 3; ++axis) {
+    config.workspace_min_m[axis] = bounds.min()[axis];
+    config.workspace_max_m[axis] = bounds.max()[axis];
+  }
+  const double floor_m = bounds.min().z();
+  config.lift_min_m = options.lift_min_m.value_or(floor_m + options.body_radius_m);
+  config.lift_max_m = options.lift_max_m.value_or(
+      std::min(bounds.max().z() - options.body_radius_m, floor_m + kReach_m));
+  if (config.lift_min_m >= config.lift_max_m) {
+    throw SetupError("the sensor's lowest height, " + two_decimals(config.lift_min_m) +
+                     " m, is not below its highest, " + two_decimals(config.lift_max_m) +
+                     " m: see --lift-min, --lift-max, --body-radius and --unit");
+  }
+  config.base_speed_m_s = options.base_speed_m_s;
+  config.lift_speed_m_s = options.lift_speed_m_s;
+  config.turn_speed_rad_s = options.turn_speed_deg_s * kRadPerDegree;
+}
+
+void fill_map(run_config_t& config, const RunOptions& options, const Eigen::AlignedBox3d& bounds) {
+  constexpr double kLargestSide = 4096.0;
+  config.voxel_size_m = options.voxel_size_m;
+  const double sides = bounds.sizes().maxCoeff() / options.voxel_size_m + 2 * options.margin_voxels;
+  if (sides > kLargestSide - 2.0) {
+    throw SetupError(
+        "the scene is " + two_decimals(bounds.sizes().maxCoeff()) +
+        " m long, more than the 4096 voxels a map may have: give a larger --voxel-size, "
+        "or the right --unit");
+  }
+  const VoxelGrid grid = grid_of(config);
+  const VoxelIndex margin = VoxelIndex::Constant(options.margin_voxels);
+  const VoxelIndex min = grid.voxel_of(bounds.min()) - margin;
+  const VoxelIndex max = grid.voxel_of(bounds.max()) + margin;
+  for (int axis = 0; axis < 3; ++axis) {
+    config.window_min[axis] = min[axis];
+    config.window_size[axis] = max[axis] - min[axis] + 1;
+  }
+  try {
+    const VoxelMap fits(grid, window_of(config));
+  } catch (const std::exception& error) {
+    throw SetupError("the map cannot be made: " + std::string(error.what()) +
+                     "; give a larger --voxel-size");
+  }
+}
+
+void fill_planner(run_config_t& config, const RunOptions& options) {
+  if (options.step_min_m > options.step_max_m) {
+    throw SetupError("--step-min must not be above --step-max");
+  }
+  config.max_views = options.views.value_or(options.quality ? 300 : 60);
+  config.max_attempts = options.max_attempts;
+  config.use_quality = options.quality ? 1 : 0;
+  config.quality_threshold = options.quality_threshold;
+  config.clearance_m = options.clearance_m;
+  config.departure_m = options.departure_m;
+  config.directions = options.directions;
+  config.threads = options.threads;
+  config.step_min_m = options.step_min_m;
+  config.step_max_m = options.step_max_m;
+  config.fitness_tolerance = options.fitness_tolerance;
+  config.max_evaluations = options.max_evaluations;
+  config.stop_window_views = options.stop_window_views;
+  config.stop_new_area_m2 = options.stop_new_area_m2;
+}
+
+/// The start must be a place where the base can be, and at the planner's clearance, or nothing
+/// could be planned from it.
+void check_start(const run_config_t& config, const Scene& scene) {
+  const SensorPose start = start_pose_of(config);
+  try {
+    const Base base(base_limits_of(config), start, scene);
+  } catch (const std::invalid_argument& error) {
+    throw SetupError("--start: " + std::string(error.what()));
+  }
+  const double clearance_m =
+      scene.clearance_m(start.position_m, start.position_m, config.clearance_m);
+  if (clearance_m < config.clearance_m) {
+    throw SetupError("--start: too near an obstacle, " + two_decimals(clearance_m) +
+                     " m where the planner keeps " + two_decimals(config.clearance_m) +
+                     " m: start elsewhere, or give a smaller --clearance");
+  }
+}
+
+}  // namespace
+
+RunSetup prepare_run(const RunOptions& options) {
+  const SceneDescription description =
+      find_scene(options.scene, options.scenes_folder, given_options(options));
+  TriangleMesh mesh = load_mesh(description.file, description.options);
+  const Eigen::AlignedBox3d bounds = mesh.bounds_m();
+
+  RunSetup setup;
+  run_config_t& config = setup.config;
+  config.seed = options.seed;
+  config.scene_name = description.name;
+  config.scene_file = std::filesystem::absolute(description.file).lexically_normal().string();
+  config.unit_m = description.options.unit_m.value_or(0.0);
+  if (description.options.up) config.scene_up = name_of(*description.options.up);
+  config.scene_digest = mesh_digest(mesh);
+  config.program_version = NEXTVIEW_VERSION;
+  fill_start(config, options, description, bounds);
+  fill_sensor(config, options);
+  fill_base(config, options, bounds);
+  fill_map(config, options, bounds);
+  fill_planner(config, options);
+  if (const std::string reason = check(config); !reason.empty()) {
+    throw SetupError("the configuration cannot be right: " + reason);
+  }
+
+  setup.scene = std::make_shared<const Scene>(std::move(mesh));
+  check_start(config, *setup.scene);
+  const double escape = escape_share(*setup.scene, start_pose_of(config).position_m);
+  if (escape > 0.0) {
+    setup.warnings.push_back(two_decimals(100.0 * escape) +
+                             " % of the rays from the start meet no surface: the scene is not "
+                             "closed, and where nothing is met nothing can be recovered");
+  }
+  return setup;
+}
+
+ReachParameters reach_of(const run_config_t& config) {
+  ReachParameters reach;
+  reach.clearance_m = config.clearance_m;
+  reach.box_min_m = Eigen::Vector3d(config.workspace_min_m);
+  reach.box_max_m = Eigen::Vector3d(config.workspace_max_m);
+  reach.box_min_m.z() = std::max(reach.box_min_m.z(), config.lift_min_m);
+  reach.box_max_m.z() = std::min(reach.box_max_m.z(), config.lift_max_m);
+  return reach;
+}
+
+}  // namespace nextview

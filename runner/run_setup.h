@@ -1,0 +1,35 @@
+#pragma once
+
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "lcmtypes/channels.h"
+#include "runner/run_options.h"
+#include "scene/scene.h"
+#include "scoring/reachable_positions.h"
+
+namespace nextview {
+
+/// A run that cannot start; the message names the file or option and says what to do.
+class SetupError : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// Everything a run needs to know before its first process starts.
+struct RunSetup {
+  run_config_t config{};               ///< without the run's number
+  std::shared_ptr<const Scene> scene;  ///< for the scoring only
+  std::vector<std::string> warnings;   ///< for the user
+};
+
+/// Loads the scene and turns options into the run's configuration, everything checked.
+/// @throws SetupError, or SceneError where the scene itself cannot be used
+RunSetup prepare_run(const RunOptions& options);
+
+/// Where a robot of this run may be.
+ReachParameters reach_of(const run_config_t& config);
+
+}  // namespace nextview

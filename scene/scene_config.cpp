@@ -1,0 +1,22 @@
+#include "scene/scene_config.h"
+
+#include "scene/mesh_file.h"
+#include "scene/triangle_mesh.h"
+
+namespace nextview {
+
+Scene load_scene(const run_config_t& config) {
+  SceneOptions options;
+  if (config.unit_m > 0.0) options.unit_m = config.unit_m;
+  if (!config.scene_up.empty()) options.up = parse_up_axis(config.scene_up);
+  TriangleMesh mesh = load_mesh(config.scene_file, options);
+  const std::string digest = mesh_digest(mesh);
+  if (digest != config.scene_digest) {
+    throw SceneError(config.scene_file + ": its triangles have digest " + digest +
+                     ", but the run was set up for " + config.scene_digest +
+                     "; has the file changed?");
+  }
+  return Scene(std::move(mesh));
+}
+
+}  // namespace nextview

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "lcmtypes/channels.h"
+#include "scene/scene.h"
+
+namespace nextview {
+
+/// The scene a run is simulated in: run_config_t's scene_file, read with its unit and up axis.
+/// @throws SceneError when it cannot be loaded, or is not the one whose digest the run has
+Scene load_scene(const run_config_t& config);
+
+}  // namespace nextview

@@ -1,0 +1,166 @@
+// The planner on a bus without faults, with a base that refuses some goals and a mapper that may
+// lie: what it publishes, when, and on what.
+
+#include "planner/planner_process.h"
+
+#include <gtest/gtest.h>
+
+#include <map>
+#include <optional>
+#include <set>
+
+#include "mapper/mapper_config.h"
+#include "mapper/mapper_process.h"
+#include "planner/planner_config.h"
+#include "sensor_sim/sensor_sim_process.h"
+#include "tests/lcmtypes/lossy_network.h"
+#include "tests/planner/boxes_run.h"
+
+namespace nextview {
+namespace {
+
+using std::chrono::milliseconds;
+using Attempt = std::pair<int, int>;  // view and attempt
+
+run_config_t boxes_config() {
+  run_config_t config = boxes_run_config();
+  config.max_views = 6;
+  config.max_attempts = 3;
+  return config;
+}
+
+class PlannerOnTheBus : public testing::Test {
+ protected:
+  PlannerOnTheBus() {
+    base_bus_.on<goal_t>([this](const goal_t& goal) { arrive(goal); });
+    watcher_.on<goal_t>([this](const goal_t& goal) { goals_[{goal.view, goal.attempt}] = goal; });
+    watcher_.on<stop_t>([this](const stop_t& stop) { stop_ = stop; });
+    watcher_.on<commit_t>([this](const commit_t& commit) { commits_[commit.view] = commit; });
+    watcher_.on<range_image_t>([this](const range_image_t& part) {
+      if (auto image = assembler_.add(part)) images_.emplace(part.view, std::move(*image));
+    });
+  }
+
+  void arrive(const goal_t& goal) {
+    arrival_t arrival{};
+    arrival.utime = goal.utime + 1000;
+    arrival.view = goal.view;
+    arrival.attempt = goal.attempt;
+    arrival.arrived = !refused_.contains({goal.view, goal.attempt});
+    if (!arrival.arrived) arrival.refusal = "a chair is in the way";
+    for (int axis = 0; axis < 3; ++axis) arrival.arrival_position_m[axis] = goal.position_m[axis];
+    arrival.pan_rad = goal.pan_rad;
+    arrival.tilt_rad = goal.tilt_rad;
+    base_bus_.publish(arrival);
+  }
+
+  /// One piece of everybody's work, the mapper only when it may; false when all wait.
+  bool turn(bool mapper_works) {
+    bool worked = planner_.step();
+    worked |= sensor_.step();
+    if (mapper_works) worked |= mapper_.step();
+    for (Bus* bus : {&planner_bus_, &base_bus_, &sensor_bus_, &mapper_bus_, &watcher_}) {
+      worked |= bus->handle(milliseconds(0));
+    }
+    return worked;
+  }
+  void run() {
+    while (turn(true)) {
+    }
+  }
+
+  run_config_t config_ = boxes_config();
+  LossyNetwork network_{{}, 1};
+  Bus planner_bus_{network_.connect(), 7, "planner"};
+  Bus base_bus_{network_.connect(), 7, "base_sim"};
+  Bus sensor_bus_{network_.connect(), 7, "sensor_sim"};
+  Bus mapper_bus_{network_.connect(), 7, "mapper"};
+  Bus watcher_{network_.connect(), 7, "run"};
+  PlannerProcess planner_{planner_bus_, config_};
+  SensorSimProcess sensor_{sensor_bus_, config_};
+  MapperProcess mapper_{mapper_bus_, config_};
+  RangeImageAssembler assembler_;
+
+  std::set<Attempt> refused_;
+  std::map<Attempt, goal_t> goals_;
+  std::map<int, commit_t> commits_;
+  std::map<int, ReceivedRangeImage> images_;
+  std::optional<stop_t> stop_;
+};
+
+TEST_F(PlannerOnTheBus, DecidesAfterRefusalsOnWhatItHasFoldedAndOnThemAlone) {
+  refused_ = {{3, 1}, {5, 1}, {5, 2}};
+  run();
+  ASSERT_TRUE(stop_);
+  EXPECT_EQ(stop_->stop_reason, "view_limit");
+  EXPECT_EQ(stop_->views, 6);
+
+  MapBuilder builder(grid_of(config_), window_of(config_));
+  const auto predictor = make_predictor(config_);
+  std::size_t decided_again = 1;  // the first goal is the start
+  for (int view = 1; view <= 6; ++view) {
+    std::vector<SensorPose> refused;
+    for (int attempt = 1; view > 1 && attempt <= commits_.at(view).attempt; ++attempt) {
+      const auto decision =
+          decide_next_view(builder.map(), *predictor, planner_parameters_of(config_),
+                           images_.at(view - 1).image.pose, config_.seed, view, attempt, refused);
+      ASSERT_TRUE(decision);
+      const goal_t& goal = goals_.at({view, attempt});
+      EXPECT_EQ(Eigen::Vector3d(goal.position_m), decision->pose.position_m)
+          << "view " << view << ", attempt " << attempt;
+      EXPECT_EQ(goal.pan_rad, decision->pose.pan_rad);
+      refused.push_back(decision->pose);
+      ++decided_again;
+    }
+    const FoldReport& report = builder.fold(images_.at(view).image);
+    predictor->map_changed(builder.map(), report.changed_slots, report.updated_surfaces);
+  }
+  EXPECT_EQ(commits_.at(5).attempt, 3);
+  EXPECT_EQ(decided_again, goals_.size());
+}
+
+TEST_F(PlannerOnTheBus, PublishesAGoalOnlyOnceTheCommitHasCome) {
+  while (turn(false)) {  // until all wait for the mapper
+  }
+  ASSERT_TRUE(images_.contains(1));
+  EXPECT_EQ(goals_.size(), 1U);
+  while (mapper_.step() || mapper_bus_.handle(milliseconds(0))) {
+  }
+  while (!goals_.contains({2, 1})) {
+    ASSERT_TRUE(watcher_.handle(milliseconds(0)) || planner_bus_.handle(milliseconds(0)) ||
+                planner_.step());
+  }
+  EXPECT_TRUE(commits_.contains(1));
+  EXPECT_GT(goals_.at({2, 1}).plan_wall_s, 0.0);
+}
+
+TEST_F(PlannerOnTheBus, StopsWithoutAnotherGoalWhenTheMapperHasAnotherMap) {
+  while (turn(false)) {
+  }
+  ASSERT_TRUE(images_.contains(1));
+  commit_t lie = example<commit_t>();
+  lie.view = 1;
+  lie.attempt = 1;
+  lie.map_digest = std::string(32, '0');
+  mapper_bus_.publish(lie);
+  while (turn(false)) {
+  }
+  ASSERT_TRUE(stop_);
+  EXPECT_EQ(stop_->stop_reason, "digest_mismatch");
+  EXPECT_NE(stop_->detail.find(lie.map_digest), std::string::npos) << stop_->detail;
+  EXPECT_EQ(goals_.size(), 1U);
+}
+
+TEST_F(PlannerOnTheBus, GivesUpAfterAsManyAttemptsAsItMayMake) {
+  refused_ = {{3, 1}, {5, 1}, {5, 2}, {5, 3}};
+  ASSERT_EQ(config_.max_attempts, 3);
+  run();
+  ASSERT_TRUE(stop_);
+  EXPECT_EQ(stop_->stop_reason, "no_feasible_goal");
+  EXPECT_EQ(stop_->views, 4);
+  EXPECT_EQ(stop_->final_attempt, config_.max_attempts);
+  EXPECT_NE(stop_->detail.find("a chair is in the way"), std::string::npos) << stop_->detail;
+}
+
+}  // namespace
+}  // namespace nextview

@@ -1,0 +1,127 @@
+#include "planner/prediction/free_space_field.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <vector>
+
+namespace nextview {
+namespace {
+
+VoxelMap empty_map(const VoxelIndex& min, const VoxelIndex& size) {
+  VoxelMap map({0.1, Eigen::Vector3d::Zero()}, {min, size});
+  std::fill(map.labels().begin(), map.labels().end(), Label::Empty);
+  return map;
+}
+
+// The definition, voxel by voxel.
+std::uint8_t expected_byte(const VoxelMap& map, const VoxelIndex& index) {
+  if (!map.contains(index)) return FreeSpaceField::kOutside;
+  const auto is_empty = [&map](const VoxelIndex& at) {
+    return map.contains(at) && map.label(at) == Label::Empty;
+  };
+  switch (map.label(index)) {
+    case Label::Occupied:
+      return FreeSpaceField::kOccupied;
+    case Label::OcclusionPlane:
+      return FreeSpaceField::kOcclusionPlane;
+    case Label::Unmarked:
+    case Label::Occluded:
+      return FreeSpaceField::kUnseen;
+    case Label::Empty:
+      break;
+  }
+  for (int d = 1; d < FreeSpaceField::kMaxJump; ++d) {
+    for (int k = -d; k <= d; ++k) {
+      for (int j = -d; j <= d; ++j) {
+        const int step = std::max(std::abs(j), std::abs(k)) == d ? 1 : 2 * d;
+        for (int i = -d; i <= d; i += step) {
+          if (!is_empty(index + VoxelIndex(i, j, k))) {
+            return static_cast<std::uint8_t>(d);
+          }
+        }
+      }
+    }
+  }
+  return FreeSpaceField::kMaxJump;
+}
+
+int count_wrong_bytes(const FreeSpaceField& field, const VoxelMap& map) {
+  int wrong = 0;
+  const VoxelIndex end = map.window().min + map.window().size;
+  for (int k = map.window().min[2] - 1; k <= end[2]; ++k) {
+    for (int j = map.window().min[1] - 1; j <= end[1]; ++j) {
+      for (int i = map.window().min[0] - 1; i <= end[0]; ++i) {
+        wrong += field.at({i, j, k}) != expected_byte(map, {i, j, k});
+      }
+    }
+  }
+  return wrong;
+}
+
+TEST(FreeSpaceField, AnEmptyMapCountsDownToItsLimits) {
+  const VoxelMap map = empty_map({0, 0, 0}, {9, 9, 9});
+  const FreeSpaceField field(map);
+  EXPECT_EQ(field.at({4, 4, 4}), 5);
+  EXPECT_EQ(field.at({0, 4, 4}), 1);
+  EXPECT_EQ(field.at({4, 7, 4}), 2);
+  EXPECT_EQ(field.at({-1, 4, 4}), FreeSpaceField::kOutside);
+  EXPECT_EQ(field.at({9, 9, 9}), FreeSpaceField::kOutside);
+}
+
+TEST(FreeSpaceField, DistancesEndAtTheLargestJump) {
+  const VoxelMap map = empty_map({-40, -40, -40}, {81, 81, 81});
+  const FreeSpaceField field(map);
+  for (int i = -40; i <= 40; ++i) {
+    const int to_limit = 41 - std::abs(i);
+    EXPECT_EQ(field.at({i, 0, 0}), std::min<int>(to_limit, FreeSpaceField::kMaxJump));
+    EXPECT_EQ(field.at({i, 2, i}), field.at({0, i, 0}));
+  }
+}
+
+TEST(FreeSpaceField, FollowsRandomChangesOfTheMap) {
+  std::mt19937 random(7);
+  int updates = 0;
+  for (const VoxelIndex& size : {VoxelIndex(30, 20, 12), VoxelIndex(130, 9, 11),
+                                 VoxelIndex(62, 5, 40), VoxelIndex(1, 1, 1)}) {
+    VoxelMap map = empty_map({-7, 3, -2}, size);
+    FreeSpaceField field(map);
+    FreeSpaceField by_three(map, 3);
+    const auto below = [&random](int n) {
+      return static_cast<int>(random() % static_cast<unsigned>(n));
+    };
+    for (int round = 0; round < 12; ++round) {
+      std::vector<std::uint32_t> changed;
+      for (int i = below(8); i >= 0; --i) {
+        const VoxelIndex index =
+            map.window().min + VoxelIndex(below(size[0]), below(size[1]), below(size[2]));
+        // Mostly free space, so that distances are long.
+        const auto label = below(3) > 0 ? Label::Empty : static_cast<Label>(below(5));
+        if (map.label(index) == label) continue;
+        map.set_label(index, label);
+        const auto slot = static_cast<std::uint32_t>(map.slot(index));
+        if (std::find(changed.begin(), changed.end(), slot) == changed.end()) {
+          changed.push_back(slot);
+        }
+      }
+      field.update(map, changed);
+      by_three.update(map, changed);
+      ASSERT_EQ(count_wrong_bytes(field, map), 0) << "round " << round;
+      ASSERT_EQ(count_wrong_bytes(by_three, map), 0) << "round " << round << ", three threads";
+      ++updates;
+    }
+  }
+  EXPECT_EQ(updates, 48);
+}
+
+TEST(FreeSpaceField, AMovedWindowIsANewField) {
+  VoxelMap map = empty_map({0, 0, 0}, {12, 10, 8});
+  FreeSpaceField field(map);
+  map.move_window({3, 0, 0});
+  field.update(map, {});
+  EXPECT_EQ(count_wrong_bytes(field, map), 0);
+}
+
+}  // namespace
+}  // namespace nextview

@@ -1,0 +1,159 @@
+#include "report/run_report.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <sstream>
+
+#include "report/progress.h"
+
+namespace nextview {
+namespace {
+
+constexpr char kDigest[] = "0123456789abcdef0123456789abcdef";
+
+/// Two views: the start, and one that was decided on in 4 ms.
+FinishedRun two_views() {
+  FinishedRun run;
+  run.config.scene_name = "box";
+  run.config.seed = 5;
+  run.config.max_views = 2;
+  run.stop_detail = "Enough.";
+  run.first_goal_to_last_commit_s = 0.02;
+  for (int view = 1; view <= 2; ++view) {
+    ViewRow row;
+    row.view = view;
+    row.goal.view = view;
+    row.goal.attempt = 1;
+    row.goal.fitness = 0.75;
+    row.goal.iterations = 6;
+    row.goal.evaluations = 9;
+    row.goal.plan_wall_s = view == 1 ? 0.0 : 0.004;
+    row.first_plan_wall_s = row.goal.plan_wall_s;
+    row.arrival.path_length_m = view == 1 ? 0.0 : 1.5;
+    row.commit.pan_rad = std::numbers::pi / 2.0;
+    row.commit.map_digest = kDigest;
+    row.commit.mean_quality = 0.5;
+    row.commit.update_wall_s = 0.003;
+    if (view == 2) row.surface_coverage = 0.25;
+    run.rows.push_back(row);
+  }
+  return run;
+}
+
+std::vector<std::string> lines_of(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  return lines;
+}
+
+TEST(Views, AreOneRowEach) {
+  std::ostringstream out;
+  write_views(out, two_views());
+  const auto lines = lines_of(out.str());
+  ASSERT_EQ(lines.size(), 3u);
+  EXPECT_TRUE(lines[0].starts_with(
+      "view,x_m,y_m,z_m,pan_deg,tilt_deg,fitness,iterations,evaluations,plan_s,mean_quality,"
+      "occupied_area_m2,occlusion_plane_area_m2,surface_coverage,map_digest,"));
+  EXPECT_TRUE(lines[1].starts_with(
+      "1,0.000000,0.000000,0.000000,90.0000,0.0000,,,,,0.500000,0.0000,0.0000,," +
+      std::string(kDigest) + ","))
+      << lines[1];
+  EXPECT_TRUE(lines[2].starts_with(
+      "2,0.000000,0.000000,0.000000,90.0000,0.0000,0.75,6,9,0.004000,0.500000,0.0000,0.0000,"
+      "0.250000," +
+      std::string(kDigest) + ","))
+      << lines[2];
+  for (const std::string& line : lines) {
+    EXPECT_EQ(std::count(line.begin(), line.end(), ','),
+              std::count(lines[0].begin(), lines[0].end(), ','));
+  }
+}
+
+TEST(Summary, SaysHowTheRunEnded) {
+  FinishedRun run = two_views();
+  run.collisions = 1;
+  run.stop_reason = StopReason::NothingNew;
+  std::ostringstream out;
+  write_summary(out, run);
+  const auto json = nlohmann::json::parse(out.str());
+  EXPECT_EQ(json.at("scene"), "box");
+  EXPECT_EQ(json.at("seed"), 5);
+  EXPECT_EQ(json.at("views"), 2);
+  EXPECT_EQ(json.at("stop_reason"), "nothing_new");
+  EXPECT_EQ(json.at("surface_coverage"), 0.25);
+  EXPECT_EQ(json.at("path_length_m"), 1.5);
+  EXPECT_EQ(json.at("collisions"), 1);
+  EXPECT_EQ(json.at("plan_s_median"), 0.004) << "the start was not decided on";
+  EXPECT_EQ(json.at("map_digest"), kDigest);
+}
+
+TEST(Summary, CountsAsBusAndWaitingWhatNoStageOnTheLongestWayTakes) {
+  FinishedRun run = two_views();
+  for (ViewRow& row : run.rows) row.fold_wall_s = 0.001;
+  run.rows[1].arrival.move_wall_s = 0.001;
+  run.rows[1].scan_wall_s = 0.001;
+  const auto share = [&run] {
+    std::ostringstream out;
+    write_summary(out, run);
+    return nlohmann::json::parse(out.str()).at("bus_and_waiting_share").get<double>();
+  };
+  // Of 20 ms: 1 + 4 of fold and plan beside 3 of update, 2 on the way to the next, 3 of update.
+  EXPECT_NEAR(share(), 0.5, 1e-12);
+  // An update longer than fold and plan is what the goal waits for.
+  run.rows[0].commit.update_wall_s = 0.007;
+  EXPECT_NEAR(share(), 0.4, 1e-12);
+  // What follows a refusal is beside nothing.
+  run.rows[1].refused_wall_s = 0.002;
+  EXPECT_NEAR(share(), 0.3, 1e-12);
+}
+
+TEST(Summary, OfARunWithoutViewsIsWholeToo) {
+  FinishedRun run;
+  run.stop_reason = StopReason::Interrupted;
+  std::ostringstream out;
+  write_summary(out, run);
+  const auto json = nlohmann::json::parse(out.str());
+  EXPECT_EQ(json.at("views"), 0);
+  EXPECT_TRUE(json.at("surface_coverage").is_null());
+}
+
+TEST(Median, IsTheMiddle) {
+  EXPECT_EQ(median({}), 0.0);
+  EXPECT_EQ(median({3.0}), 3.0);
+  EXPECT_EQ(median({3.0, 1.0, 2.0}), 2.0);
+  EXPECT_EQ(median({4.0, 1.0, 2.0, 3.0}), 2.5);
+}
+
+TEST(Progress, IsOneLineAView) {
+  std::ostringstream out;
+  Progress progress(out, Progress::Style::Lines, 2);
+  for (const ViewRow& row : two_views().rows) progress.show(row);
+  progress.say("something else");
+  progress.finish();
+  EXPECT_EQ(out.str(),
+            "view   1/2  coverage unknown  quality 0.500  start\n"
+            "view   2/2  coverage 0.250  quality 0.500  decided in 4.0 ms\n"
+            "something else\n");
+}
+
+TEST(Progress, OnATerminalIsABarOnOneLine) {
+  std::ostringstream out;
+  Progress progress(out, Progress::Style::Bar, 2);
+  const FinishedRun run = two_views();
+  progress.show(run.rows[0]);
+  EXPECT_EQ(out.str().find('\n'), std::string::npos);
+  EXPECT_NE(out.str().find("[###############...............] view   1/2"), std::string::npos);
+  progress.say("something else");
+  progress.show(run.rows[1]);
+  progress.finish();
+  EXPECT_NE(out.str().find("\033[Ksomething else\n"), std::string::npos);
+  EXPECT_NE(out.str().find("[##############################] view   2/2"), std::string::npos);
+  EXPECT_TRUE(out.str().ends_with("\n"));
+}
+
+}  // namespace
+}  // namespace nextview

@@ -1,0 +1,96 @@
+#include "sensor/range_image_message.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <random>
+
+namespace nextview {
+namespace {
+
+RangeImage make_image(int columns, int rows) {
+  RangeImage image;
+  image.pose = {Eigen::Vector3d(1.0, 2.0, 3.0), 0.3, -0.2};
+  image.position_m = image.pose.position_m;
+  image.world_from_sensor = world_from_sensor_rotation(0.3, -0.2);
+  image.rays = make_ray_table(TiltedLineScan{columns, rows, 1.0, 0.7});
+  image.limits = {0.05, 30.0};
+  for (std::size_t i = 0; i < image.rays.pixels(); ++i) {
+    image.range_m.push_back(quantise_range(0.1 + 1e-4 * static_cast<double>(i % 200000)));
+  }
+  image.range_m[1] = std::numeric_limits<float>::infinity();
+  image.range_m[2] = std::numeric_limits<float>::quiet_NaN();
+  return image;
+}
+
+bool same_bits(const std::vector<float>& a, const std::vector<float>& b) {
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(float)) == 0;
+}
+
+TEST(RangeImageMessage, ComesOutAsItWentInWhateverTheOrderOfItsParts) {
+  struct Size {
+    int columns, rows;
+    std::size_t parts;
+  };
+  for (const Size size : {Size{2, 2, 1}, Size{64, 30, 1}, Size{512, 256, 11}, Size{2, 1918, 1},
+                          Size{960, 960, 121}}) {
+    const RangeImage image = make_image(size.columns, size.rows);
+    auto messages = range_image_messages(image, 4, 2, 1000, 0.5);
+    EXPECT_EQ(messages.size(), size.parts);
+    for (const auto& message : messages) {
+      EXPECT_EQ(check(message), "");
+      EXPECT_LE(static_cast<std::size_t>(message.getEncodedSize()), kMaxMessageBytes);
+    }
+    std::ranges::shuffle(messages, std::mt19937(1));
+    RangeImageAssembler assembler;
+    for (std::size_t i = 0; i + 1 < messages.size(); ++i) {
+      EXPECT_FALSE(assembler.add(messages[i]));
+      EXPECT_FALSE(assembler.add(messages[i]));  // twice is once
+    }
+    const auto received = assembler.add(messages.back());
+    ASSERT_TRUE(received);
+    EXPECT_EQ(received->view, 4);
+    EXPECT_EQ(received->attempt, 2);
+    EXPECT_EQ(received->utime, 1000);
+    EXPECT_EQ(received->image.world_from_sensor, image.world_from_sensor);
+    EXPECT_EQ(received->image.position_m, image.position_m);
+    EXPECT_EQ(received->image.pose.pan_rad, image.pose.pan_rad);
+    EXPECT_EQ(received->image.rays.row_cos, image.rays.row_cos);
+    EXPECT_EQ(received->image.limits.max_m, 30.0);
+    EXPECT_TRUE(same_bits(received->image.range_m, image.range_m));
+  }
+}
+
+TEST(RangeImageMessage, KeepsImagesApart) {
+  const RangeImage image = make_image(512, 256);
+  const auto first = range_image_messages(image, 1, 1, 0, 0.0);
+  const auto second = range_image_messages(image, 2, 1, 0, 0.0);
+  RangeImageAssembler assembler;
+  int whole = 0;
+  for (std::size_t i = 0; i < first.size(); ++i) {
+    whole += assembler.add(first[i]).has_value();
+    whole += assembler.add(second[i]).has_value();
+  }
+  EXPECT_EQ(whole, 2);
+}
+
+TEST(RangeImageMessage, RejectsPartsThatContradictEachOther) {
+  const auto parts = range_image_messages(make_image(512, 256), 1, 1, 0, 0.0);
+  RangeImageAssembler assembler;
+  assembler.add(parts[0]);
+  range_image_t elsewhere = parts[1];
+  elsewhere.position_m[0] += 0.001;
+  EXPECT_THROW(assembler.add(elsewhere), RejectedMessage);
+  range_image_t overlapping = parts[1];
+  overlapping.first_pixel -= 1;
+  EXPECT_THROW(assembler.add(overlapping), RejectedMessage);
+  std::optional<ReceivedRangeImage> received;
+  for (std::size_t i = 1; i < parts.size(); ++i) received = assembler.add(parts[i]);
+  EXPECT_TRUE(received);
+}
+
+}  // namespace
+}  // namespace nextview

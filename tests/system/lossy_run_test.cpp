@@ -1,0 +1,115 @@
+// The whole loop, the four processes' classes on a bus that loses, repeats and reorders: whatever
+// the bus does, the run goes the same way.
+
+#include <gtest/gtest.h>
+
+#include <iostream>
+
+#include "base_sim/base_sim_process.h"
+#include "mapper/mapper_process.h"
+#include "planner/planner_process.h"
+#include "sensor_sim/sensor_sim_process.h"
+#include "tests/lcmtypes/lossy_network.h"
+#include "tests/planner/boxes_run.h"
+
+namespace nextview {
+namespace {
+
+using std::chrono::milliseconds;
+
+run_config_t boxes_config() {
+  run_config_t config = boxes_run_config();
+  config.columns = 128;  // 16 384 pixels: an image of two parts
+  config.rows = 128;
+  config.max_views = 8;
+  return config;
+}
+
+/// What a run came to; free of wall-clock times.
+struct Outcome {
+  std::string stop_reason;
+  std::vector<std::string> digests;
+  std::vector<std::int64_t> utimes;
+  bool operator==(const Outcome& other) const = default;
+};
+
+class SimulatedRun {
+ public:
+  explicit SimulatedRun(const LossyNetwork::Faults& faults, unsigned seed)
+      : network_(faults, seed) {
+    const run_config_t config = boxes_config();
+    add<PlannerProcess>("planner", config);
+    add<BaseSimProcess>("base_sim", config);
+    add<SensorSimProcess>("sensor_sim", config);
+    add<MapperProcess>("mapper", config);
+  }
+
+  Outcome finish() {
+    Bus watcher(network_.connect(), 7, "run");
+    Outcome outcome;
+    std::map<int, commit_t> commits;
+    watcher.on<commit_t>([&](const commit_t& commit) { commits[commit.view] = commit; });
+    watcher.on<stop_t>([&](const stop_t& stop) { outcome.stop_reason = stop.stop_reason; });
+    constexpr int kPatience = 2000;
+    for (int asked = 0; asked < kPatience; ++asked) {
+      while (turn() || watcher.handle(milliseconds(0))) {
+      }
+      for (auto& process : processes_) process->ask_again();  // everybody's timer is due
+      if (outcome.stop_reason.empty()) {
+        watcher.request<stop_t>(0, 0);
+        continue;
+      }
+      if (std::ssize(commits) == 8) break;
+      for (int view = 1; view <= 8; ++view) {
+        if (!commits.contains(view)) watcher.request<commit_t>(view, 0);
+      }
+    }
+    for (const auto& [view, commit] : commits) {
+      outcome.digests.push_back(commit.map_digest);
+      outcome.utimes.push_back(commit.utime);
+    }
+    return outcome;
+  }
+  int lost() const { return network_.lost(); }
+
+ private:
+  template <class Process>
+  void add(const std::string& role, const run_config_t& config) {
+    buses_.push_back(std::make_unique<Bus>(network_.connect(), 7, role));
+    processes_.push_back(std::make_unique<Process>(*buses_.back(), config));
+    BusProcess* process = processes_.back().get();
+    buses_.back()->on_missing(
+        [process](const request_t& request) { process->on_missing(request); });
+  }
+  // One piece of everybody's work; false when all wait.
+  bool turn() {
+    bool worked = false;
+    for (std::size_t i = 0; i < buses_.size(); ++i) {
+      worked |= processes_[i]->step();
+      worked |= buses_[i]->handle(milliseconds(0));
+    }
+    return worked;
+  }
+
+  LossyNetwork network_;
+  std::vector<std::unique_ptr<Bus>> buses_;
+  std::vector<std::unique_ptr<BusProcess>> processes_;
+};
+
+TEST(LossyRun, GoesTheSameWayWhateverTheBusLoses) {
+  const Outcome undisturbed = SimulatedRun({}, 1).finish();
+  EXPECT_EQ(undisturbed.stop_reason, "view_limit");
+  ASSERT_EQ(undisturbed.digests.size(), 8U);
+  EXPECT_NE(undisturbed.digests[0], undisturbed.digests[7]);
+  int lost = 0;
+  for (unsigned seed = 1; seed <= 5; ++seed) {
+    SimulatedRun run({.loss = 0.1 * seed, .repeat = 0.2, .overtake = 0.2}, seed);
+    EXPECT_EQ(run.finish(), undisturbed) << "seed " << seed;
+    lost += run.lost();
+  }
+  EXPECT_GT(lost, 100);
+  std::cout << lost << " messages lost in 5 runs\n";
+}
+
+}  // namespace
+}  // namespace nextview
