@@ -169,11 +169,11 @@ std::string Base::refusal_of(std::span<const Eigen::Vector3d> waypoints_m,
   if (waypoints_m.empty()) {
     return "the path has no waypoints";
   }
-  if (const std::string why = bad_angles(goal); !why.empty()) {
+  if (std::string why = bad_angles(goal); !why.empty()) {
     return why;
   }
   for (const Eigen::Vector3d& waypoint_m : waypoints_m) {
-    if (const std::string why = out_of_reach(limits_, waypoint_m); !why.empty()) {
+    if (std::string why = out_of_reach(limits_, waypoint_m); !why.empty()) {
       return why;
     }
   }
@@ -186,7 +186,7 @@ std::string Base::refusal_of(std::span<const Eigen::Vector3d> waypoints_m,
            " m from the goal " + place(goal.position_m);
   }
   for (std::size_t i = 1; i < waypoints_m.size(); ++i) {
-    const std::string why =
+    std::string why =
         collision(*scene_, limits_.body_radius_m, waypoints_m[i - 1], waypoints_m[i]);
     if (!why.empty()) {
       return why;

@@ -173,8 +173,10 @@ Picture draw(const Scene& scene, const std::vector<Colour>& colours, const Camer
     for (int x = 0; x < view.width; ++x) {
       Colour sum = Colour::Zero();
       for (int sample = 0; sample < kSamples * kSamples; ++sample) {
-        const double across = x + (sample % kSamples + 0.5) / kSamples;
-        const double along = y + (sample / kSamples + 0.5) / kSamples;
+        const int column = sample % kSamples;
+        const int row = sample / kSamples;
+        const double across = x + (column + 0.5) / kSamples;
+        const double along = y + (row + 0.5) / kSamples;
         const auto hit = scene.first_hit(
             camera.corner + across * camera.right + along * camera.down, camera.direction);
         sum += hit ? colours[hit->triangle] : Colour::Ones();
