@@ -23,7 +23,9 @@ void mark_obstacles(const Byte* bytes, Byte largest_free, Byte* __restrict dista
 // out[i] = the least of in[i - 1], in[i], in[i + 1].
 NEXTVIEW_VECTOR_CLONES
 void narrow(const Byte* in, Byte* __restrict out, std::size_t size) {
-  for (std::size_t i = 0; i < size; ++i) out[i] = std::min(std::min(in[i - 1], in[i]), in[i + 1]);
+  const Byte* const left = in - 1;
+  const Byte* const right = in + 1;
+  for (std::size_t i = 0; i < size; ++i) out[i] = std::min(std::min(left[i], in[i]), right[i]);
 }
 
 // to[i] = at most one more than the least of three rows.
