@@ -1,8 +1,10 @@
 #include "scene/scene.h"
 
 #include <embree3/rtcore.h>
+#ifdef __x86_64__
 #include <pmmintrin.h>
 #include <xmmintrin.h>
+#endif
 
 #include <algorithm>
 #include <cmath>
@@ -17,18 +19,25 @@ namespace {
 
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
-// Embree asks for denormals off while it works; the caller's arithmetic is left as it was.
+// Embree asks for denormals off while it works on x86; the caller's arithmetic is left as it was.
 class DenormalsOff {
  public:
+#ifdef __x86_64__
   DenormalsOff() : saved_(_mm_getcsr()) {
     _mm_setcsr(saved_ | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON);
   }
   ~DenormalsOff() { _mm_setcsr(saved_); }
+#else
+  DenormalsOff() {}
+  ~DenormalsOff() {}
+#endif
   DenormalsOff(const DenormalsOff&) = delete;
   DenormalsOff& operator=(const DenormalsOff&) = delete;
 
+#ifdef __x86_64__
  private:
   unsigned int saved_;
+#endif
 };
 
 void check(const TriangleMesh& mesh) {
