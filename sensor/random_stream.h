@@ -32,7 +32,8 @@ class RandomStream {
     return static_cast<std::uint32_t>(((draw() >> 32) * count) >> 32);
   }
 
-  /// Standard normal (Box and Muller); uses the platform's log and cos.
+  /// Standard normal (Marsaglia's polar method). Made of operations that IEEE 754 rounds one way,
+  /// so that noise is the same on every processor.
   double gaussian();
 
  private:
