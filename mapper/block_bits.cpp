@@ -9,7 +9,8 @@ namespace nextview {
 
 namespace {
 
-constexpr std::size_t kSide = 8;
+constexpr std::size_t kSide = kBlockSide;
+static_assert(kSide == 8, "a layer is a word, and a row of labels too");
 constexpr std::uint64_t kFirstY = 0x0101010101010101u;  // the bits of y = 0
 constexpr std::uint64_t kLastY = kFirstY << (kSide - 1);
 

@@ -18,7 +18,8 @@ struct MapBuilder::State {
       : map(grid, window), blocks(map), census(map, blocks), digest(blocks) {}
 
   void update_surfaces();
-  void box_changes(std::span<const std::uint32_t> changed_blocks);
+  void leave(const MapWindow& box);
+  void derive();
 
   VoxelMap map;
   MapBlocks blocks;
@@ -47,10 +48,7 @@ const FoldReport& MapBuilder::fold(const RangeImage& image) {
       mark_rays(s.map, sensor, s.ray_ends.ends(), s.report.changed_slots);  // P12
   s.update_surfaces();                                                      // P9
   s.census.note_changes(s.blocks, s.report.changed_slots);
-  const auto changed_blocks =
-      s.census.update(s.map, s.blocks, s.report.changed_slots);  // OcclusionPlane, P13
-  for (const std::uint32_t block : changed_blocks) s.digest.invalidate(block);
-  s.box_changes(changed_blocks);
+  s.derive();
 
   const PixelCounts& pixels = s.ray_ends.counts();
   s.report.points = pixels.points;
@@ -79,21 +77,28 @@ void MapBuilder::State::update_surfaces() {
   }
 }
 
-void MapBuilder::State::box_changes(std::span<const std::uint32_t> changed_blocks) {
-  MapWindow& box = report.changed_box;
-  box = {VoxelIndex::Zero(), VoxelIndex::Zero()};
-  if (report.changed_slots.empty()) return;
-  VoxelIndex min = blocks.coordinate(changed_blocks.front());
-  VoxelIndex max = min;
-  for (const std::uint32_t block : changed_blocks) {
-    min = min.cwiseMin(blocks.coordinate(block));
-    max = max.cwiseMax(blocks.coordinate(block));
-  }
-  const MapWindow& window = map.window();
-  box.min = (MapBlocks::kSide * min).cwiseMax(window.min);
-  const VoxelIndex end =
-      (MapBlocks::kSide * (max + VoxelIndex::Ones())).cwiseMin(window.min + window.size);
-  box.size = end - box.min;
+std::span<const std::uint32_t> MapBuilder::move_window(const VoxelIndex& new_min) {
+  State& s = *state_;
+  s.report.changed_slots.clear();
+  for (const MapWindow& box : left_behind(s.map.window(), new_min)) s.leave(box);
+  s.map.move_window(new_min);
+  s.blocks.move_window(new_min);
+  s.derive();
+  return s.report.changed_slots;
+}
+
+void MapBuilder::State::leave(const MapWindow& box) {
+  for_each_voxel(box, [this](const VoxelIndex& voxel) {
+    const SurfaceVoxel* const surface = map.surface(voxel);
+    if (surface != nullptr) quality.forget(surface->quality);
+  });
+  blocks.for_each_in(box, [this](std::uint32_t block) { census.note_leaving(blocks, block); });
+}
+
+// Occlusion planes, areas (P13) and what the digest must hash again.
+void MapBuilder::State::derive() {
+  const auto changed_blocks = census.update(map, blocks, report.changed_slots);
+  for (const std::uint32_t block : changed_blocks) digest.invalidate(block);
 }
 
 const VoxelMap& MapBuilder::map() const { return state_->map; }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,9 +25,6 @@ struct FoldReport {
   /// Slots of the voxels whose surface data differs from before the fold, each once; in a fixed
   /// order.
   std::vector<std::uint32_t> updated_surfaces;
-  /// A box that holds every changed voxel, rounded out to blocks of 8 and clipped to the window;
-  /// of size zero when nothing changed.
-  MapWindow changed_box = {VoxelIndex::Zero(), VoxelIndex::Zero()};
 };
 
 /// What a commit says about a map.
@@ -55,11 +53,18 @@ class MapBuilder {
   MapBuilder(MapBuilder&&) noexcept;
   MapBuilder& operator=(MapBuilder&&) noexcept;
 
-  /// Updates the map by one range image (P12). The report stays valid until the next fold.
+  /// Updates the map by one range image (P12). The report stays valid until the next fold or move.
   /// @throws std::invalid_argument, the map unchanged, when the sensor lies outside the window or
   ///         the image cannot be right: sizes that disagree, fewer than 2 x 2 pixels, a ray table
   ///         or matrix that is no rotation, limits that are not 0 <= min < max, a negative range
   const FoldReport& fold(const RangeImage& image);
+
+  /// Moves the window so that it starts at new_min, its size unchanged. What it leaves is
+  /// forgotten, by labels, surface data, statistics and digest alike; what it enters is Unmarked,
+  /// also where it has been before. The cost grows with what is left behind, not with the map.
+  /// @return slots whose voxel lies inside both before and after and has another label: planes that
+  ///         only touched Empty voxels that are forgotten. Valid until the next fold or move.
+  std::span<const std::uint32_t> move_window(const VoxelIndex& new_min);
 
   const VoxelMap& map() const;
   MapStatistics statistics() const;

@@ -8,7 +8,7 @@ namespace nextview {
 
 namespace {
 
-constexpr std::size_t kSide = MapBlocks::kSide;
+constexpr std::size_t kSide = kBlockSide;
 using Slots = std::array<MapBlocks::AxisSlots, 3>;
 
 constexpr std::uint8_t byte(Label label) { return static_cast<std::uint8_t>(label); }
@@ -71,12 +71,14 @@ void MapCensus::note_changes(const MapBlocks& blocks, std::span<const std::uint3
   for (std::size_t begin = 0; begin < slots.size(); begin += portion.size()) {
     const auto these = slots.subspan(begin, std::min(portion.size(), slots.size() - begin));
     blocks.blocks_of(these, portion.data());
-    for (const std::uint32_t block : std::span(portion).first(these.size())) {
-      if (listed_[block]) continue;
-      listed_[block] = 1;
-      to_look_.push_back(block);
-    }
+    for (const std::uint32_t block : std::span(portion).first(these.size())) list(block);
   }
+}
+
+void MapCensus::note_leaving(const MapBlocks& blocks, std::uint32_t block) {
+  list(block);
+  // Once it has left, nobody knows any more what lay beside it.
+  list_neighbours(blocks, block, sides_touched(empty_[block]));
 }
 
 void MapCensus::list_neighbours(const MapBlocks& blocks, std::uint32_t block, unsigned sides) {
@@ -84,9 +86,7 @@ void MapCensus::list_neighbours(const MapBlocks& blocks, std::uint32_t block, un
   const auto neighbours = blocks.neighbours(block);
   for (std::size_t side = 0; side < 6; ++side) {
     const std::uint32_t neighbour = neighbours[side];
-    if (!(sides >> side & 1) || neighbour == blocks.size() || listed_[neighbour]) continue;
-    listed_[neighbour] = 1;
-    to_look_.push_back(neighbour);
+    if ((sides >> side & 1) != 0 && neighbour != blocks.size()) list(neighbour);
   }
 }
 

@@ -29,6 +29,10 @@ class MapCensus {
   /// Takes note that these slots' labels have changed.
   void note_changes(const MapBlocks& blocks, std::span<const std::uint32_t> slots);
 
+  /// Takes note that some voxels of these blocks are about to be forgotten: that the window is
+  /// about to leave them. To be told before the map and the blocks move.
+  void note_leaving(const MapBlocks& blocks, std::uint32_t block);
+
   /// Derives the occlusion planes around what has changed and counts again. Voxels that turned from
   /// Occluded to OcclusionPlane or back without having been noted are added to changed_slots.
   /// @return the blocks looked at, which are the only ones whose labels may have changed since the
@@ -56,6 +60,11 @@ class MapCensus {
     BlockLabels labels;
   };
 
+  void list(std::uint32_t block) {
+    if (listed_[block]) return;
+    listed_[block] = 1;
+    to_look_.push_back(block);
+  }
   void take_labels(VoxelMap& map, const MapBlocks& blocks, std::uint32_t block);
   void list_neighbours(const MapBlocks& blocks, std::uint32_t block, unsigned sides);
   Counts derive(VoxelMap& map, const MapBlocks& blocks, const LookedAt& at,

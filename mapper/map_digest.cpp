@@ -13,7 +13,7 @@ namespace nextview {
 namespace {
 
 constexpr std::size_t kSurfaceBytes = 3 * 8 + 4 + 2;
-constexpr std::size_t kMaxBlockBytes = 3 * 4 + MapBlocks::kVoxels * (1 + kSurfaceBytes);
+constexpr std::size_t kMaxBlockBytes = 3 * 4 + kBlockVoxels * (1 + kSurfaceBytes);
 
 // The bytes of one block, in a buffer on the stack.
 class BlockBytes {
@@ -42,10 +42,10 @@ void put_surface(const SurfaceVoxel* surface, BlockBytes& bytes) {
 }
 
 // The labels of a block as bytes, x fastest; Unmarked where it sticks out of the window.
-using BlockLabels = std::array<std::uint8_t, MapBlocks::kVoxels>;
+using BlockLabels = std::array<std::uint8_t, kBlockVoxels>;
 
 BlockLabels labels_of(const VoxelMap& map, const MapBlocks& blocks, std::uint32_t block) {
-  constexpr std::size_t kSide = MapBlocks::kSide;
+  constexpr std::size_t kSide = kBlockSide;
   BlockLabels bytes = {};
   const auto [xs, ys, zs] = blocks.slots(block);
   for (std::size_t row = 0; row < kSide * kSide; ++row) {
@@ -73,10 +73,11 @@ bool serialise(const VoxelMap& map, const MapBlocks& blocks, std::uint32_t block
   const VoxelIndex coordinate = blocks.coordinate(block);
   for (int axis = 0; axis < 3; ++axis) bytes.put(static_cast<std::int32_t>(coordinate[axis]));
   for (const std::uint8_t label : labels) bytes.put(label);
-  for (int v = 0; v < MapBlocks::kVoxels; ++v) {
+  for (int v = 0; v < kBlockVoxels; ++v) {
     if (labels[static_cast<std::size_t>(v)] != static_cast<std::uint8_t>(Label::Occupied)) continue;
-    const VoxelIndex offset(v % 8, v / 8 % 8, v / 64);
-    put_surface(map.surface(MapBlocks::kSide * coordinate + offset), bytes);
+    const VoxelIndex offset(v % kBlockSide, v / kBlockSide % kBlockSide,
+                            v / (kBlockSide * kBlockSide));
+    put_surface(map.surface(kBlockSide * coordinate + offset), bytes);
   }
   return true;
 }
@@ -124,11 +125,11 @@ std::string MapDigest::digest(const VoxelMap& map, const MapBlocks& blocks) {
   const std::unique_ptr<XXH3_state_t, FreeState> state(XXH3_createState());
   if (state == nullptr) throw std::bad_alloc();
   XXH3_128bits_reset(state.get());
-  for (std::size_t block = 0; block < present_.size(); ++block) {
+  blocks.for_each_in_order([&](std::uint32_t block) {
     if (present_[block]) {
       XXH3_128bits_update(state.get(), hashes_[block].data(), sizeof(Hash));
     }
-  }
+  });
   return hex(canonical(XXH3_128bits_digest(state.get())));
 }
 

@@ -25,6 +25,14 @@ class QualityCensus {
     sum_ += to - from;
   }
 
+  /// A voxel of this quality is no longer part of the map.
+  void forget(std::uint16_t quality) {
+    if (quality == 0) return;
+    --voxels_[quality];
+    --rated_;
+    sum_ -= quality;
+  }
+
   /// Mean over this many Occupied voxels, in [0, 1]; 0 when there are none.
   double mean(std::int64_t occupied) const {
     if (occupied == 0) return 0.0;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "mapper/image_check.h"
 #include "mapper/integer_line.h"
@@ -63,6 +64,17 @@ void ReferenceMapUpdate::fold(const RangeImage& image) {
       voxel.quality = std::max(voxel.quality, static_cast<std::uint16_t>(normal.quality));
     }
   }
+  label_occlusion_planes();
+}
+
+void ReferenceMapUpdate::move_window(const VoxelIndex& new_min) {
+  ReferenceMapUpdate moved(grid_, {new_min, window_.size});
+  for_each_voxel(moved.window_, [&](const VoxelIndex& voxel) {
+    moved.labels_[moved.place(voxel)] = label(voxel);
+    const SurfaceVoxel* const kept = surface(voxel);
+    if (kept != nullptr) moved.surfaces_[moved.place(voxel)] = *kept;
+  });
+  *this = std::move(moved);
   label_occlusion_planes();
 }
 

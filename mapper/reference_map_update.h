@@ -21,6 +21,9 @@ class ReferenceMapUpdate {
   /// @throws std::invalid_argument as MapBuilder::fold
   void fold(const RangeImage& image);
 
+  /// As MapBuilder::move_window: what the window leaves is forgotten.
+  void move_window(const VoxelIndex& new_min);
+
   /// Unmarked outside the window.
   Label label(const VoxelIndex& voxel) const;
   /// nullptr where no point was sensed.

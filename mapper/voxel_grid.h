@@ -1,6 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 
@@ -32,6 +34,15 @@ struct VoxelGrid {
   }
 };
 
+/// Voxels are stored, counted and hashed in blocks of 8 x 8 x 8 that are aligned to absolute
+/// indices, so that a block is the same wherever the window lies.
+constexpr int kBlockBits = 3;
+constexpr int kBlockSide = 1 << kBlockBits;
+constexpr int kBlockVoxels = kBlockSide * kBlockSide * kBlockSide;
+
+/// The coordinate of the block an index lies in, rounded down also below zero.
+constexpr int block_of_index(int index) { return index >> kBlockBits; }
+
 /// The box of voxels a map covers: min <= index < min + size on every axis.
 struct MapWindow {
   VoxelIndex min = VoxelIndex::Zero();
@@ -47,7 +58,39 @@ struct MapWindow {
     }
     return true;
   }
+  bool is_empty() const { return (size.array() <= 0).any(); }
   bool operator==(const MapWindow& other) const = default;
 };
+
+/// What a window leaves when it moves to start at new_min: boxes of which none meets another. Those
+/// that are not needed are empty.
+inline std::array<MapWindow, 3> left_behind(const MapWindow& window, const VoxelIndex& new_min) {
+  std::array<MapWindow, 3> boxes;
+  // Peeled off one axis after the other, each at one end; [min, end) is what remains.
+  VoxelIndex min = window.min;
+  VoxelIndex end = window.min + window.size;
+  for (int axis = 0; axis < 3; ++axis) {
+    VoxelIndex box_min = min;
+    VoxelIndex box_end = end;
+    if (new_min[axis] > window.min[axis]) {
+      min[axis] = box_end[axis] = std::min(new_min[axis], end[axis]);
+    } else {
+      end[axis] = box_min[axis] = std::max(new_min[axis] + window.size[axis], min[axis]);
+    }
+    boxes[static_cast<std::size_t>(axis)] = {box_min, box_end - box_min};
+  }
+  return boxes;
+}
+
+/// Calls see(voxel) for every voxel of a box, x fastest.
+template <typename See>
+void for_each_voxel(const MapWindow& box, See see) {
+  const VoxelIndex end = box.min + box.size;
+  for (int k = box.min[2]; k < end[2]; ++k) {
+    for (int j = box.min[1]; j < end[1]; ++j) {
+      for (int i = box.min[0]; i < end[0]; ++i) see(VoxelIndex(i, j, k));
+    }
+  }
+}
 
 }  // namespace nextview

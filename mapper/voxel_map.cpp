@@ -36,9 +36,7 @@ void check(const VoxelGrid& grid, const MapWindow& window) {
   }
 }
 
-std::size_t blocks_along(int mask) {
-  return static_cast<std::size_t>(mask / VoxelMap::kBlockSide + 1);
-}
+std::size_t blocks_along(int mask) { return static_cast<std::size_t>(mask / kBlockSide + 1); }
 
 }  // namespace
 
@@ -112,32 +110,9 @@ void VoxelMap::forget(const VoxelIndex& index) {
   if (block->voxels.empty()) blocks_[block_of_slot(index)].reset();
 }
 
-void VoxelMap::forget_box(const VoxelIndex& min, const VoxelIndex& end) {
-  for (int k = min[2]; k < end[2]; ++k) {
-    for (int j = min[1]; j < end[1]; ++j) {
-      for (int i = min[0]; i < end[0]; ++i) forget({i, j, k});
-    }
-  }
-}
-
 void VoxelMap::move_window(const VoxelIndex& new_min) {
-  VoxelIndex min = window_.min;
-  VoxelIndex end = window_.min + window_.size;
-  // Peel off what is left behind, one axis after the other; [min, end) is what remains.
-  for (int axis = 0; axis < 3; ++axis) {
-    const int new_end = new_min[axis] + window_.size[axis];
-    if (new_min[axis] > min[axis]) {
-      VoxelIndex slab_end = end;
-      slab_end[axis] = std::min(new_min[axis], end[axis]);
-      forget_box(min, slab_end);
-      min[axis] = slab_end[axis];
-    }
-    if (new_end < end[axis]) {
-      VoxelIndex slab_min = min;
-      slab_min[axis] = std::max(new_end, min[axis]);
-      forget_box(slab_min, end);
-      end[axis] = slab_min[axis];
-    }
+  for (const MapWindow& box : left_behind(window_, new_min)) {
+    for_each_voxel(box, [this](const VoxelIndex& voxel) { forget(voxel); });
   }
   window_.min = new_min;
 }

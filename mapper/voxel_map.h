@@ -50,8 +50,6 @@ struct SurfaceVoxel {
 /// 1 KiB, and 32 bytes per Occupied voxel.
 class VoxelMap {
  public:
-  static constexpr int kBlockSide = 8;  ///< surface data is kept in blocks of 8 x 8 x 8 slots
-
   /// An all-Unmarked map.
   /// @throws std::invalid_argument unless the voxel size is positive and finite and every side of
   ///         the window is in [1, 4096] with at most 2^31 slots in all
@@ -108,21 +106,20 @@ class VoxelMap {
  private:
   struct SurfaceBlock {
     static constexpr std::uint16_t kNone = 0xffff;
-    std::array<std::uint16_t, kBlockSide * kBlockSide * kBlockSide> entry;  ///< into voxels
+    std::array<std::uint16_t, kBlockVoxels> entry;  ///< into voxels
     std::vector<SurfaceVoxel> voxels;
   };
 
   std::size_t block_of_slot(const VoxelIndex& index) const;
   static std::size_t entry_in_block(const VoxelIndex& index);
   void forget(const VoxelIndex& index);
-  void forget_box(const VoxelIndex& min, const VoxelIndex& end);
 
   VoxelGrid grid_;
   MapWindow window_;
   std::array<int, 3> mask_;
   std::array<int, 3> shift_;
   std::vector<Label> labels_;
-  std::vector<std::unique_ptr<SurfaceBlock>> blocks_;  ///< by slot >> 3 per axis
+  std::vector<std::unique_ptr<SurfaceBlock>> blocks_;  ///< by slot / kBlockSide per axis
 };
 
 }  // namespace nextview
