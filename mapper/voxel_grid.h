@@ -82,15 +82,30 @@ inline std::array<MapWindow, 3> left_behind(const MapWindow& window, const Voxel
   return boxes;
 }
 
+/// What two boxes share; empty when they do not meet.
+inline MapWindow overlap(const MapWindow& a, const MapWindow& b) {
+  const VoxelIndex min = a.min.cwiseMax(b.min);
+  const VoxelIndex end = (a.min + a.size).cwiseMin(b.min + b.size);
+  return {min, (end - min).cwiseMax(0)};
+}
+
+/// Calls see(voxel) for the first voxel of every row along x of a box, y fastest; not when it is
+/// empty.
+template <typename See>
+void for_each_row(const MapWindow& box, See see) {
+  if (box.is_empty()) return;
+  const VoxelIndex end = box.min + box.size;
+  for (int k = box.min[2]; k < end[2]; ++k) {
+    for (int j = box.min[1]; j < end[1]; ++j) see(VoxelIndex(box.min[0], j, k));
+  }
+}
+
 /// Calls see(voxel) for every voxel of a box, x fastest.
 template <typename See>
 void for_each_voxel(const MapWindow& box, See see) {
-  const VoxelIndex end = box.min + box.size;
-  for (int k = box.min[2]; k < end[2]; ++k) {
-    for (int j = box.min[1]; j < end[1]; ++j) {
-      for (int i = box.min[0]; i < end[0]; ++i) see(VoxelIndex(i, j, k));
-    }
-  }
+  for_each_row(box, [&](const VoxelIndex& first) {
+    for (int n = 0; n < box.size[0]; ++n) see(VoxelIndex(first[0] + n, first[1], first[2]));
+  });
 }
 
 }  // namespace nextview

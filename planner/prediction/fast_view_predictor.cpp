@@ -137,21 +137,24 @@ void FastViewPredictor::prepare(const VoxelMap& map) {
   for (std::size_t slot = 0; slot < map.labels().size(); ++slot) {
     if (map.labels()[slot] == Label::Occupied) slots.push_back(static_cast<std::uint32_t>(slot));
   }
-  surfaces_.update(map, *field_, slots);
+  surfaces_.update(map, slots);
 }
 
 void FastViewPredictor::map_changed(const VoxelMap& map,
                                     std::span<const std::uint32_t> changed_slots,
                                     std::span<const std::uint32_t> updated_surfaces) {
-  if (!field_ || field_->window() != map.window()) {
+  if (!field_ || field_->window().size != map.window().size) {
     prepare(map);
     return;
+  }
+  for (const MapWindow& left : left_behind(field_->window(), map.window().min)) {
+    surfaces_.forget(map, left);
   }
   field_->update(map, changed_slots);
   if (!counts_quality()) return;
   // A voxel may become Occupied by points that had no normal, and so without surface data.
-  surfaces_.update(map, *field_, changed_slots);
-  surfaces_.update(map, *field_, updated_surfaces);
+  surfaces_.update(map, changed_slots);
+  surfaces_.update(map, updated_surfaces);
 }
 
 void FastViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
@@ -175,7 +178,7 @@ void FastViewPredictor::predict_all(const VoxelMap& map, std::span<const VoxelIn
   const std::size_t together = counts_quality() ? 1 : sensors.size();
   for (std::size_t i = 0; i < sensors.size(); i += together) {
     predict_together(
-        sensors.subspan(i, together), counts.subspan(i * views, together * views),
+        map, sensors.subspan(i, together), counts.subspan(i * views, together * views),
         i == 0 ? meanwhile : [] {});
   }
 }
@@ -195,7 +198,7 @@ void FastViewPredictor::fill_queues(std::size_t jobs) {
   }
 }
 
-void FastViewPredictor::predict_together(std::span<const VoxelIndex> sensors,
+void FastViewPredictor::predict_together(const VoxelMap& map, std::span<const VoxelIndex> sensors,
                                          std::span<ViewCounts> counts,
                                          const std::function<void()>& meanwhile) {
   fill_queues(sensors.size() * tables_.size());
@@ -220,7 +223,7 @@ void FastViewPredictor::predict_together(std::span<const VoxelIndex> sensors,
 #pragma omp barrier
 #pragma omp for schedule(dynamic)
       for (std::size_t i = 0; i < counts.size(); ++i) {
-        count_improvements(i, workspace, counts[i]);
+        count_improvements(map, i, workspace, counts[i]);
       }
     }
   }
@@ -264,14 +267,15 @@ void FastViewPredictor::cast(Table& table, PacketQueue& queue, const VoxelIndex&
               field_->steps_from(sensor), table.bundle, queue, outcomes);
 }
 
-void FastViewPredictor::count_improvements(std::size_t orientation, Workspace& workspace,
-                                           ViewCounts& counts) const {
+void FastViewPredictor::count_improvements(const VoxelMap& map, std::size_t orientation,
+                                           Workspace& workspace, ViewCounts& counts) const {
   for (const auto& [number, packet] : packets_of_[orientation]) {
     const std::int32_t* const occupied_at = &tables_[number].occupied_at[packet * kPacketRays];
     const QuantisedDirection* const rays = &tables_[number].directions[packet * kPacketRays];
     for (std::size_t i = 0; i < kPacketRays; ++i) {
       if (occupied_at[i] < 0) continue;
-      const std::uint32_t surface = surfaces_.number_at(static_cast<std::size_t>(occupied_at[i]));
+      const VoxelIndex voxel = field_->index_of(static_cast<std::size_t>(occupied_at[i]));
+      const std::uint32_t surface = surfaces_.number_at(map.slot(voxel));
       workspace.improvement.add(surface, quantised_cosine(surfaces_[surface].normal, rays[i]));
     }
   }

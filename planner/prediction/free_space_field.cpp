@@ -2,6 +2,7 @@
 
 #include <bit>
 #include <stdexcept>
+#include <utility>
 
 #include "sensor/vector_clones.h"
 
@@ -77,15 +78,47 @@ FreeSpaceField::FreeSpaceField(const VoxelMap& map, int threads)
 }
 
 void FreeSpaceField::update(const VoxelMap& map, std::span<const std::uint32_t> changed_slots) {
-  if (map.window() != window_) {
+  if (map.window().size != window_.size) {
     *this = FreeSpaceField(map, threads_);
     return;
   }
   Box changed{cells_, VoxelIndex::Zero()};
+  if (map.window() != window_) move(map, changed);
 #pragma omp parallel num_threads(threads_) if (threads_ > 1)
   {
     take_labels(map, changed_slots, changed);
     if ((changed.min.array() < changed.end.array()).all()) find_distances(changed);
+  }
+}
+
+void FreeSpaceField::move(const VoxelMap& map, Box& changed) {
+  FreeSpaceField before = std::move(*this);
+  distance_ = std::move(before.distance_);
+  window_ = map.window();
+  bytes_.assign(before.bytes_.size(), kOutside);
+  const MapWindow kept = overlap(before.window_, window_);
+  const auto row_of = [](auto& field, const VoxelIndex& voxel) {
+    return field.bytes_.begin() + static_cast<std::ptrdiff_t>(field.offset(voxel));
+  };
+  for_each_row(kept, [&](const VoxelIndex& first) {
+    std::copy_n(row_of(before, first), kept.size[0], row_of(*this, first));
+  });
+  const auto cell_of = [this](const VoxelIndex& voxel) {
+    return VoxelIndex(voxel - window_.min + VoxelIndex::Ones());
+  };
+  for (const MapWindow& entered : left_behind(window_, before.window_.min)) {
+    for_each_voxel(entered, [&](const VoxelIndex& voxel) {
+      const Label label = map.label(voxel);
+      bytes_[offset(voxel)] = byte_of(label);
+      if (label == Label::Empty) changed.add(cell_of(voxel));
+    });
+  }
+  // Of what was left only the layer around the window is still asked for, and it is no longer free.
+  const MapWindow all = {window_.min - VoxelIndex::Ones(), window_.size + VoxelIndex::Constant(2)};
+  for (const MapWindow& left : left_behind(before.window_, window_.min)) {
+    for_each_voxel(overlap(left, all), [&](const VoxelIndex& voxel) {
+      if (before.free_distance(voxel) > 0) changed.add(cell_of(voxel));
+    });
   }
 }
 
@@ -102,11 +135,7 @@ void FreeSpaceField::take_labels(const VoxelMap& map, std::span<const std::uint3
     const bool was_empty = byte <= kMaxJump;
     const bool is_empty = label == Label::Empty;
     byte = byte_of(label);
-    if (was_empty != is_empty) {
-      const VoxelIndex cell = index - window_.min + VoxelIndex::Ones();
-      mine.min = mine.min.cwiseMin(cell);
-      mine.end = mine.end.cwiseMax(cell + VoxelIndex::Ones());
-    }
+    if (was_empty != is_empty) mine.add(index - window_.min + VoxelIndex::Ones());
   }
 #pragma omp critical
   {

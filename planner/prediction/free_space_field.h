@@ -25,7 +25,8 @@ namespace nextview {
 /// farther. Of the bytes that end a walk the bits of kMaxJump are 0: a walk adds them to its steps
 /// without asking. The sides of the field are powers of two, so an offset is made by shifts; unlike
 /// the map's buffer it has a layer around the window, so that a walk needs no test for the limit.
-/// Only the box around what changed is worked out again (chebyshev_distance.h).
+/// Only the box around what changed is worked out again (chebyshev_distance.h). So the field keeps
+/// its own layout, relative to the window; when that moves, what stays is copied.
 class FreeSpaceField {
  public:
   static constexpr std::uint8_t kMaxJump = ChebyshevDistance::kLargest;
@@ -39,7 +40,8 @@ class FreeSpaceField {
   /// @throws std::invalid_argument when it would need 2 GiB or more
   explicit FreeSpaceField(const VoxelMap& map, int threads = 1);
 
-  /// Follows the map after a change of the labels at these slots (and of no others).
+  /// Follows the map after a change of the labels at these slots (and of no others) or, and, a move
+  /// of its window: then they are those of voxels that were inside before and still are.
   void update(const VoxelMap& map, std::span<const std::uint32_t> changed_slots);
 
   const MapWindow& window() const { return window_; }
@@ -48,6 +50,13 @@ class FreeSpaceField {
     const VoxelIndex cell = index - window_.min + VoxelIndex::Ones();
     return static_cast<std::size_t>(cell[0]) + (static_cast<std::size_t>(cell[1]) << shift_[1]) +
            (static_cast<std::size_t>(cell[2]) << shift_[2]);
+  }
+  /// The voxel whose byte lies at an offset; the inverse of offset().
+  VoxelIndex index_of(std::size_t offset) const {
+    const auto x = static_cast<int>(offset & ((std::size_t{1} << shift_[1]) - 1));
+    const auto yz = static_cast<int>(offset >> shift_[1]);
+    const int z_shift = shift_[2] - shift_[1];
+    return window_.min + VoxelIndex(x - 1, (yz & ((1 << z_shift) - 1)) - 1, (yz >> z_shift) - 1);
   }
   std::uint8_t at(const VoxelIndex& index) const { return bytes_[offset(index)]; }
   /// The Chebyshev distance within which everything around a voxel is Empty; 0 when it is not
@@ -67,6 +76,11 @@ class FreeSpaceField {
   struct Box {
     VoxelIndex min;
     VoxelIndex end;
+
+    void add(const VoxelIndex& cell) {
+      min = min.cwiseMin(cell);
+      end = end.cwiseMax(cell + VoxelIndex::Ones());
+    }
   };
 
   static std::uint8_t byte_of(Label label);
@@ -74,6 +88,9 @@ class FreeSpaceField {
     return &bytes_[(static_cast<std::size_t>(y) << shift_[1]) +
                    (static_cast<std::size_t>(z) << shift_[2])];
   }
+  // Follows a move of the window; the labels of what it has entered are read from the map. Widens a
+  // box as below.
+  void move(const VoxelMap& map, Box& changed);
   // Reads the labels again and widens a box by the cells that have become Empty or are so no
   // longer. To be called by all threads of an OpenMP region, or outside of one; and so is the next.
   void take_labels(const VoxelMap& map, std::span<const std::uint32_t> changed_slots, Box& changed);

@@ -8,14 +8,13 @@
 #include <vector>
 
 #include "mapper/voxel_map.h"
-#include "planner/prediction/free_space_field.h"
 #include "planner/prediction/view_predictor.h"
 
 namespace nextview {
 
-/// What f_quality asks of the Occupied voxels, found by where a ray ended in a FreeSpaceField:
-/// normal and quality lie densely by a surface number, and a sparse table of pages leads from an
-/// offset to the number.
+/// What f_quality asks of the Occupied voxels: normal and quality lie densely by a surface number,
+/// and a sparse table of pages leads to the number from the voxel's slot in the map, which stays
+/// the same when the window moves.
 class SurfaceTable {
  public:
   struct Surface {
@@ -26,23 +25,29 @@ class SurfaceTable {
   SurfaceTable() = default;
 
   /// Takes the surface data of these slots of the map, those that are not Occupied left out.
-  void update(const VoxelMap& map, const FreeSpaceField& field,
-              std::span<const std::uint32_t> slots);
+  void update(const VoxelMap& map, std::span<const std::uint32_t> slots);
+  /// Forgets the voxels of a box that the map's window has left, before anything is taken from
+  /// where it has gone.
+  void forget(const VoxelMap& map, const MapWindow& left);
 
-  /// The number of the Occupied voxel at an offset of the field.
-  std::uint32_t number_at(std::size_t offset) const {
-    return (*pages_[offset / kPageSize])[offset % kPageSize];
+  /// The number of the Occupied voxel in a slot.
+  std::uint32_t number_at(std::size_t slot) const {
+    return (*pages_[slot / kPageSize])[slot % kPageSize];
   }
   const Surface& operator[](std::uint32_t number) const { return surfaces_[number]; }
-  std::size_t size() const { return surfaces_.size(); }
+  /// How many voxels it knows.
+  std::size_t size() const { return surfaces_.size() - free_.size(); }
 
  private:
   static constexpr std::size_t kPageSize = 512;
   static constexpr std::uint32_t kNone = 0xffffffff;
   using Page = std::array<std::uint32_t, kPageSize>;
 
+  std::uint32_t new_number();
+
   std::vector<std::unique_ptr<Page>> pages_;
   std::vector<Surface> surfaces_;
+  std::vector<std::uint32_t> free_;  ///< numbers of what was forgotten
 };
 
 /// Counts the distinct Occupied voxels of one view after the other, and what it would gain.

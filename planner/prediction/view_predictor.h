@@ -76,8 +76,9 @@ class ViewPredictor {
       const std::function<void()>& meanwhile = [] {});
 
   /// To be called after every change of the map, with the slots whose label is different and those
-  /// whose surface data is (FoldReport has both); a predictor may keep what it derives from them up
-  /// to date. It must be the same map.
+  /// whose surface data is (FoldReport has both), and after every move of its window with what
+  /// MapBuilder::move_window says; a predictor may keep what it derives from them up to date. It
+  /// must be the same map.
   virtual void map_changed(const VoxelMap& map, std::span<const std::uint32_t> changed_slots,
                            std::span<const std::uint32_t> updated_surfaces) = 0;
 

@@ -125,6 +125,55 @@ TEST(FastViewPredictor, AgreesWithFewerThreadsThanAskedFor) {
   EXPECT_GE(compare(4, 6, 4, 3), 100'000);
 }
 
+// A predictor that is told of everything that happens to a map whose window moves, against one that
+// has just seen it. Its rays, surfaces and all.
+TEST(FastViewPredictor, FollowsAWindowThatMoves) {
+  std::mt19937 random(6);
+  const auto below = [&random](int n) {
+    return static_cast<int>(random() % static_cast<unsigned>(n));
+  };
+  const VoxelIndex size(40, 30, 20);
+  VoxelMap map = random_map(random, VoxelIndex::Zero(), size);
+  const PredictionRaster raster = small_raster(15, 9, std::numbers::pi / 3.0, 30.0);
+  PlainViewPredictor plain(raster, kVoxelSize, directions(), true);
+  FastViewPredictor fast(raster, kVoxelSize, directions(), true);
+  std::vector<ViewCounts> expected(directions().size());
+  std::vector<ViewCounts> counts(directions().size());
+  std::int64_t improved = 0;
+  for (int round = 0; round < 60; ++round) {
+    const int reach = round % 10 == 9 ? 50 : 4;
+    const VoxelIndex step(below(2 * reach + 1) - reach, below(2 * reach + 1) - reach, below(3) - 1);
+    map.move_window(map.window().min + step);
+    fast.map_changed(map, {}, {});
+    const VoxelIndex sensor =
+        map.window().min + VoxelIndex(below(size[0]), below(size[1]), below(size[2]));
+    plain.predict(map, sensor, expected);
+    fast.predict(map, sensor, counts);
+    ASSERT_TRUE(std::equal(counts.begin(), counts.end(), expected.begin())) << "round " << round;
+
+    // What has been entered is filled, in part with surfaces that may lack a normal.
+    std::vector<std::uint32_t> slots;
+    std::vector<std::uint32_t> surfaces;
+    for_each_voxel(map.window(), [&](const VoxelIndex& voxel) {
+      if (map.label(voxel) != Label::Unmarked) return;
+      const auto slot = static_cast<std::uint32_t>(map.slot(voxel));
+      slots.push_back(slot);
+      map.set_label(voxel, below(40) > 0 ? Label::Empty : Label::Occupied);
+      if (map.label(voxel) == Label::Empty || below(4) == 0) return;
+      SurfaceVoxel& surface = map.surface_at(voxel);
+      surface.normal_sum = {below(40000) - 20000, below(40000) - 20000, below(40000) - 20000};
+      surface.quality = static_cast<std::uint16_t>(below(65536));
+      surfaces.push_back(slot);
+    });
+    fast.map_changed(map, slots, surfaces);
+    plain.predict(map, sensor, expected);
+    fast.predict(map, sensor, counts);
+    ASSERT_TRUE(std::equal(counts.begin(), counts.end(), expected.begin())) << "round " << round;
+    for (const ViewCounts& view : counts) improved += view.improved_voxels;
+  }
+  EXPECT_GT(improved, 10'000);
+}
+
 TEST(FastViewPredictor, PredictsFromSeveralSensorsAsFromOneAfterTheOther) {
   std::mt19937 random(5);
   const VoxelMap map = random_map(random, VoxelIndex::Zero(), {30, 25, 20});

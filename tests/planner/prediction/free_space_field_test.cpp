@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <random>
+#include <set>
 #include <vector>
 
 namespace nextview {
@@ -47,16 +48,23 @@ std::uint8_t expected_byte(const VoxelMap& map, const VoxelIndex& index) {
   return FreeSpaceField::kMaxJump;
 }
 
+// With the layer around the window.
+MapWindow with_layer(const MapWindow& window) {
+  return {window.min - VoxelIndex::Ones(), window.size + VoxelIndex::Constant(2)};
+}
+
+int count_different_bytes(const FreeSpaceField& a, const FreeSpaceField& b) {
+  int different = 0;
+  for_each_voxel(with_layer(a.window()),
+                 [&](const VoxelIndex& voxel) { different += a.at(voxel) != b.at(voxel); });
+  return different;
+}
+
 int count_wrong_bytes(const FreeSpaceField& field, const VoxelMap& map) {
   int wrong = 0;
-  const VoxelIndex end = map.window().min + map.window().size;
-  for (int k = map.window().min[2] - 1; k <= end[2]; ++k) {
-    for (int j = map.window().min[1] - 1; j <= end[1]; ++j) {
-      for (int i = map.window().min[0] - 1; i <= end[0]; ++i) {
-        wrong += field.at({i, j, k}) != expected_byte(map, {i, j, k});
-      }
-    }
-  }
+  for_each_voxel(with_layer(map.window()), [&](const VoxelIndex& voxel) {
+    wrong += field.at(voxel) != expected_byte(map, voxel);
+  });
   return wrong;
 }
 
@@ -115,12 +123,52 @@ TEST(FreeSpaceField, FollowsRandomChangesOfTheMap) {
   EXPECT_EQ(updates, 48);
 }
 
-TEST(FreeSpaceField, AMovedWindowIsANewField) {
-  VoxelMap map = empty_map({0, 0, 0}, {12, 10, 8});
-  FreeSpaceField field(map);
-  map.move_window({3, 0, 0});
-  field.update(map, {});
-  EXPECT_EQ(count_wrong_bytes(field, map), 0);
+// Changes of labels and moves of the window, one after the other; a move is told together with the
+// changes it brings about, and sometimes with others from after it.
+TEST(FreeSpaceField, FollowsAWindowThatMoves) {
+  std::mt19937 random(8);
+  const auto below = [&random](int n) {
+    return static_cast<int>(random() % static_cast<unsigned>(n));
+  };
+  int moves = 0;
+  for (const VoxelIndex& size : {VoxelIndex(30, 20, 12), VoxelIndex(90, 9, 11),
+                                 VoxelIndex(33, 34, 35), VoxelIndex(1, 2, 1)}) {
+    VoxelMap map = empty_map({-7, 3, -2}, size);
+    FreeSpaceField field(map);
+    FreeSpaceField by_three(map, 3);
+    for (int round = 0; round < 15; ++round) {
+      VoxelIndex step = VoxelIndex::Zero();
+      const int reach = round % 5 == 4 ? 2 * size.maxCoeff() : 3;  // also past all it holds
+      for (int axis = 0; axis < 3; ++axis) {
+        if (below(2) == 0) step[axis] = below(2 * reach + 1) - reach;
+      }
+      map.move_window(map.window().min + step);
+      std::set<std::uint32_t> changed;
+      const bool fill = below(2) == 0;
+      for_each_voxel(map.window(), [&](const VoxelIndex& voxel) {
+        if (map.label(voxel) != Label::Unmarked || !fill) return;
+        map.set_label(voxel, below(30) > 0 ? Label::Empty : Label::Occupied);
+        changed.insert(static_cast<std::uint32_t>(map.slot(voxel)));
+      });
+      const std::vector<std::uint32_t> slots(changed.begin(), changed.end());
+      field.update(map, slots);
+      by_three.update(map, slots);
+      ASSERT_EQ(field.window().min, map.window().min);
+      ASSERT_EQ(count_wrong_bytes(field, map), 0) << "round " << round;
+      ASSERT_EQ(count_wrong_bytes(by_three, map), 0) << "round " << round << ", three threads";
+      ASSERT_EQ(count_different_bytes(field, FreeSpaceField(map)), 0) << "round " << round;
+      moves += !step.isZero();
+    }
+  }
+  EXPECT_GT(moves, 40);
+}
+
+TEST(FreeSpaceField, AnOffsetLeadsBackToItsVoxel) {
+  const VoxelMap map = empty_map({-7, 3, -2}, {30, 20, 12});
+  const FreeSpaceField field(map);
+  for_each_voxel(with_layer(map.window()), [&](const VoxelIndex& voxel) {
+    ASSERT_EQ(field.index_of(field.offset(voxel)), voxel);
+  });
 }
 
 }  // namespace
