@@ -137,7 +137,7 @@ void FastViewPredictor::prepare(const VoxelMap& map) {
   for (std::size_t slot = 0; slot < map.labels().size(); ++slot) {
     if (map.labels()[slot] == Label::Occupied) slots.push_back(static_cast<std::uint32_t>(slot));
   }
-  surfaces_.update(map, slots);
+  surfaces_.update(map, *field_, slots);
 }
 
 void FastViewPredictor::map_changed(const VoxelMap& map,
@@ -147,14 +147,13 @@ void FastViewPredictor::map_changed(const VoxelMap& map,
     prepare(map);
     return;
   }
-  for (const MapWindow& left : left_behind(field_->window(), map.window().min)) {
-    surfaces_.forget(map, left);
-  }
+  const VoxelIndex step = map.window().min - field_->window().min;
   field_->update(map, changed_slots);
+  if (!step.isZero()) surfaces_.move(*field_, step);
   if (!counts_quality()) return;
   // A voxel may become Occupied by points that had no normal, and so without surface data.
-  surfaces_.update(map, changed_slots);
-  surfaces_.update(map, updated_surfaces);
+  surfaces_.update(map, *field_, changed_slots);
+  surfaces_.update(map, *field_, updated_surfaces);
 }
 
 void FastViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
@@ -178,7 +177,7 @@ void FastViewPredictor::predict_all(const VoxelMap& map, std::span<const VoxelIn
   const std::size_t together = counts_quality() ? 1 : sensors.size();
   for (std::size_t i = 0; i < sensors.size(); i += together) {
     predict_together(
-        map, sensors.subspan(i, together), counts.subspan(i * views, together * views),
+        sensors.subspan(i, together), counts.subspan(i * views, together * views),
         i == 0 ? meanwhile : [] {});
   }
 }
@@ -198,7 +197,7 @@ void FastViewPredictor::fill_queues(std::size_t jobs) {
   }
 }
 
-void FastViewPredictor::predict_together(const VoxelMap& map, std::span<const VoxelIndex> sensors,
+void FastViewPredictor::predict_together(std::span<const VoxelIndex> sensors,
                                          std::span<ViewCounts> counts,
                                          const std::function<void()>& meanwhile) {
   fill_queues(sensors.size() * tables_.size());
@@ -223,7 +222,7 @@ void FastViewPredictor::predict_together(const VoxelMap& map, std::span<const Vo
 #pragma omp barrier
 #pragma omp for schedule(dynamic)
       for (std::size_t i = 0; i < counts.size(); ++i) {
-        count_improvements(map, i, workspace, counts[i]);
+        count_improvements(i, workspace, counts[i]);
       }
     }
   }
@@ -267,15 +266,14 @@ void FastViewPredictor::cast(Table& table, PacketQueue& queue, const VoxelIndex&
               field_->steps_from(sensor), table.bundle, queue, outcomes);
 }
 
-void FastViewPredictor::count_improvements(const VoxelMap& map, std::size_t orientation,
-                                           Workspace& workspace, ViewCounts& counts) const {
+void FastViewPredictor::count_improvements(std::size_t orientation, Workspace& workspace,
+                                           ViewCounts& counts) const {
   for (const auto& [number, packet] : packets_of_[orientation]) {
     const std::int32_t* const occupied_at = &tables_[number].occupied_at[packet * kPacketRays];
     const QuantisedDirection* const rays = &tables_[number].directions[packet * kPacketRays];
     for (std::size_t i = 0; i < kPacketRays; ++i) {
       if (occupied_at[i] < 0) continue;
-      const VoxelIndex voxel = field_->index_of(static_cast<std::size_t>(occupied_at[i]));
-      const std::uint32_t surface = surfaces_.number_at(map.slot(voxel));
+      const std::uint32_t surface = surfaces_.number_at(static_cast<std::size_t>(occupied_at[i]));
       workspace.improvement.add(surface, quantised_cosine(surfaces_[surface].normal, rays[i]));
     }
   }

@@ -61,15 +61,14 @@ class FastViewPredictor : public RasterViewPredictor {
   int threads() const { return static_cast<int>(workspaces_.size()); }
   void make_tables(const PredictionRaster& raster, double voxel_size_m);
   void prepare(const VoxelMap& map);
-  void predict_together(const VoxelMap& map, std::span<const VoxelIndex> sensors,
-                        std::span<ViewCounts> counts, const std::function<void()>& meanwhile);
+  void predict_together(std::span<const VoxelIndex> sensors, std::span<ViewCounts> counts,
+                        const std::function<void()>& meanwhile);
   void fill_queues(std::size_t jobs);
   // What a thread does of the jobs: its own, then what others have left.
   void do_jobs(std::span<const VoxelIndex> sensors, std::size_t thread, Workspace& workspace);
   void add_up(std::span<const Workspace> workspaces, std::span<ViewCounts> counts) const;
   void cast(Table& table, PacketQueue& queue, const VoxelIndex& sensor, RayCounts* counts) const;
-  void count_improvements(const VoxelMap& map, std::size_t orientation, Workspace& workspace,
-                          ViewCounts& counts) const;
+  void count_improvements(std::size_t orientation, Workspace& workspace, ViewCounts& counts) const;
 
   std::int64_t rays_per_view_;
   std::array<Table, 6> tables_;                        // by driving axis and sign

@@ -1,22 +1,30 @@
 #include "planner/prediction/surface_table.h"
 
+#include <utility>
+
 namespace nextview {
 
-void SurfaceTable::update(const VoxelMap& map, std::span<const std::uint32_t> slots) {
+void SurfaceTable::update(const VoxelMap& map, const FreeSpaceField& field,
+                          std::span<const std::uint32_t> slots) {
   for (const std::uint32_t slot : slots) {
     if (map.labels()[slot] != Label::Occupied) continue;
-    if (pages_.size() <= slot / kPageSize) pages_.resize(slot / kPageSize + 1);
-    std::unique_ptr<Page>& page = pages_[slot / kPageSize];
-    if (page == nullptr) {
-      page = std::make_unique<Page>();
-      page->fill(kNone);
-    }
-    std::uint32_t& number = (*page)[slot % kPageSize];
+    const VoxelIndex index = map.index_of_slot(slot);
+    std::uint32_t& number = entry(field.offset(index));
     if (number == kNone) number = new_number();
-    const SurfaceVoxel* surface = map.surface(map.index_of_slot(slot));
+    const SurfaceVoxel* surface = map.surface(index);
     if (surface == nullptr) continue;
     surfaces_[number] = {quantise_direction(surface->mean_normal()), surface->quality};
   }
+}
+
+std::uint32_t& SurfaceTable::entry(std::size_t offset) {
+  if (pages_.size() <= offset / kPageSize) pages_.resize(offset / kPageSize + 1);
+  std::unique_ptr<Page>& page = pages_[offset / kPageSize];
+  if (page == nullptr) {
+    page = std::make_unique<Page>();
+    page->fill(kNone);
+  }
+  return (*page)[offset % kPageSize];
 }
 
 std::uint32_t SurfaceTable::new_number() {
@@ -30,15 +38,22 @@ std::uint32_t SurfaceTable::new_number() {
   return number;
 }
 
-void SurfaceTable::forget(const VoxelMap& map, const MapWindow& left) {
-  for_each_voxel(left, [&](const VoxelIndex& voxel) {
-    const std::size_t slot = map.slot(voxel);
-    if (slot / kPageSize >= pages_.size() || pages_[slot / kPageSize] == nullptr) return;
-    std::uint32_t& number = (*pages_[slot / kPageSize])[slot % kPageSize];
-    if (number == kNone) return;
-    free_.push_back(number);
-    number = kNone;
-  });
+void SurfaceTable::move(const FreeSpaceField& field, const VoxelIndex& step) {
+  const std::vector<std::unique_ptr<Page>> before = std::exchange(pages_, {});
+  for (std::size_t page = 0; page < before.size(); ++page) {
+    if (before[page] == nullptr) continue;
+    for (std::size_t i = 0; i < kPageSize; ++i) {
+      const std::uint32_t number = (*before[page])[i];
+      if (number == kNone) continue;
+      // The field reads an offset as a voxel of where it is now.
+      const VoxelIndex voxel = field.index_of(page * kPageSize + i) - step;
+      if (field.window().contains(voxel)) {
+        entry(field.offset(voxel)) = number;
+      } else {
+        free_.push_back(number);
+      }
+    }
+  }
 }
 
 void ImprovementCount::finish(const SurfaceTable& surfaces, ViewCounts& counts) {

@@ -8,13 +8,16 @@
 #include <vector>
 
 #include "mapper/voxel_map.h"
+#include "planner/prediction/free_space_field.h"
 #include "planner/prediction/view_predictor.h"
 
 namespace nextview {
 
-/// What f_quality asks of the Occupied voxels: normal and quality lie densely by a surface number,
-/// and a sparse table of pages leads to the number from the voxel's slot in the map, which stays
-/// the same when the window moves.
+/// What f_quality asks of the Occupied voxels, found by where a ray ended in a FreeSpaceField:
+/// normal and quality lie densely by a surface number, and a sparse table of pages leads from an
+/// offset to the number. The offset and not the map's slot, which would not change when the window
+/// moves: to work that out for every ray took 10 to 17 % of a decision with f_quality, and a move
+/// is rare.
 class SurfaceTable {
  public:
   struct Surface {
@@ -25,14 +28,14 @@ class SurfaceTable {
   SurfaceTable() = default;
 
   /// Takes the surface data of these slots of the map, those that are not Occupied left out.
-  void update(const VoxelMap& map, std::span<const std::uint32_t> slots);
-  /// Forgets the voxels of a box that the map's window has left, before anything is taken from
-  /// where it has gone.
-  void forget(const VoxelMap& map, const MapWindow& left);
+  void update(const VoxelMap& map, const FreeSpaceField& field,
+              std::span<const std::uint32_t> slots);
+  /// Follows a field that has moved by a step, and forgets what it has left.
+  void move(const FreeSpaceField& field, const VoxelIndex& step);
 
-  /// The number of the Occupied voxel in a slot.
-  std::uint32_t number_at(std::size_t slot) const {
-    return (*pages_[slot / kPageSize])[slot % kPageSize];
+  /// The number of the Occupied voxel at an offset of the field.
+  std::uint32_t number_at(std::size_t offset) const {
+    return (*pages_[offset / kPageSize])[offset % kPageSize];
   }
   const Surface& operator[](std::uint32_t number) const { return surfaces_[number]; }
   /// How many voxels it knows.
@@ -43,6 +46,7 @@ class SurfaceTable {
   static constexpr std::uint32_t kNone = 0xffffffff;
   using Page = std::array<std::uint32_t, kPageSize>;
 
+  std::uint32_t& entry(std::size_t offset);
   std::uint32_t new_number();
 
   std::vector<std::unique_ptr<Page>> pages_;
