@@ -27,6 +27,7 @@ struct Moment {
   int view;
   SensorPose present;  // where the last view was taken from
   std::unique_ptr<MapBuilder> builder;
+  std::unique_ptr<KnownSpace> space;  // of its map
 };
 
 // Works out every prediction by one kernel and answers with the counts another gave, so that the
@@ -41,21 +42,19 @@ class SameWay : public ViewPredictor {
   // While learning, the leader predicts and its answers are kept; then the kernel works.
   void learn(bool learning) { learning_ = learning; }
 
-  void predict(const VoxelMap& map, const VoxelIndex& sensor,
+  void predict(const KnownSpace& space, const VoxelIndex& sensor,
                std::span<ViewCounts> per_orientation) override {
-    auto& answer = answers_[map.slot(sensor)];
+    auto& answer = answers_[space.map().slot(sensor)];
     if (learning_) {
       answer.resize(per_orientation.size());
-      leader_->predict(map, sensor, answer);
+      leader_->predict(space, sensor, answer);
     } else {
       if (answer.empty()) throw std::logic_error("the search has left the way it learned");
-      kernel_->predict(map, sensor, per_orientation);
+      kernel_->predict(space, sensor, per_orientation);
       benchmark::DoNotOptimize(per_orientation.data());
     }
     std::copy(answer.begin(), answer.end(), per_orientation.begin());
   }
-  void map_changed(const VoxelMap&, std::span<const std::uint32_t>,
-                   std::span<const std::uint32_t>) override {}
 
  private:
   std::shared_ptr<ViewPredictor> kernel_;
@@ -79,11 +78,15 @@ std::shared_ptr<ViewPredictor> fast_predictor(double voxel_size_m, bool quality,
                                              icosahedron_orientations(), quality, threads);
 }
 
-std::optional<Decision> decide(const Moment& moment, ViewPredictor& predictor) {
+std::optional<Decision> decide_after(const KnownSpace& space, const SensorPose& present, int views,
+                                     ViewPredictor& predictor) {
   PlannerParameters parameters;
   parameters.use_quality = predictor.counts_quality();
-  return decide_next_view(moment.builder->map(), predictor, parameters, moment.present, 1,
-                          moment.view + 1, 1, {});
+  return decide_by_simplex({space, present, 1, views + 1, 1, {}}, predictor, parameters);
+}
+
+std::optional<Decision> decide(const Moment& moment, ViewPredictor& predictor) {
+  return decide_after(*moment.space, moment.present, moment.view, predictor);
 }
 
 RecordedRun record_run(const BenchScene& scene, double voxel_size_m, int views) {
@@ -91,10 +94,9 @@ RecordedRun record_run(const BenchScene& scene, double voxel_size_m, int views) 
   parameters.voxel_size_m = voxel_size_m;
   parameters.sensor = sensor_for(voxel_size_m);
   Exploration exploration(scene, parameters);
-  const auto predictor = fast_predictor(voxel_size_m, false, 1);
   RecordedRun run;
   for (int view = 1; view <= views; ++view) {
-    exploration.step(*predictor);
+    exploration.step();
     run.images.push_back(exploration.image());
   }
   run.window = exploration.builder().map().window();
@@ -111,6 +113,7 @@ std::shared_ptr<Moment> moment_after(const RecordedRun& run, const std::string& 
   for (int view = 0; view < views; ++view) {
     moment->builder->fold(run.images[static_cast<std::size_t>(view)]);
   }
+  moment->space = std::make_unique<KnownSpace>(moment->builder->map(), KnownSpace::Surfaces::Keep);
   moment->present = run.images[static_cast<std::size_t>(views) - 1].pose;
   return moment;
 }
@@ -145,19 +148,16 @@ void register_run(const std::string& name, const std::string& scene, double voxe
       [=](benchmark::State& state) {
         std::vector<double> decision_s;
         for (auto _ : state) {
-          MapBuilder builder({voxel_size_m}, run->window);
-          const auto predictor = fast_predictor(voxel_size_m, quality, threads);
-          PlannerParameters parameters;
-          parameters.use_quality = quality;
+          ExplorationParameters parameters;
+          parameters.voxel_size_m = voxel_size_m;
+          parameters.planner.use_quality = quality;
+          ViewPlanner planner(
+              {voxel_size_m}, run->window, paper_strategy(parameters, threads),
+              {.max_views = static_cast<int>(run->images.size()) + 1, .threads = threads});
           double sum_s = 0.0;
-          for (std::size_t i = 0; i < run->images.size(); ++i) {
-            const FoldReport& report = builder.fold(run->images[i]);
-            const auto decide_now = [&] {
-              predictor->map_changed(builder.map(), report.changed_slots, report.updated_surfaces);
-              benchmark::DoNotOptimize(decide_next_view(builder.map(), *predictor, parameters,
-                                                        run->images[i].pose, 1,
-                                                        static_cast<int>(i) + 2, 1, {}));
-            };
+          for (const RangeImage& image : run->images) {
+            planner.fold(image);
+            const auto decide_now = [&] { benchmark::DoNotOptimize(planner.next_view()); };
             decision_s.push_back(threads == 1 ? thread_s(decide_now) : wall_s(decide_now));
             sum_s += decision_s.back();
           }
@@ -180,20 +180,20 @@ void register_textbook_run(const std::string& scene, double voxel_size_m,
         std::vector<double> decision_s;
         for (auto _ : state) {
           MapBuilder builder({voxel_size_m}, run->window);
+          KnownSpace space(builder.map());
           const auto leader = fast_predictor(voxel_size_m, false, 1);
           double sum_s = 0.0;
           for (std::size_t i = 0; i < run->images.size(); ++i) {
             const FoldReport& report = builder.fold(run->images[i]);
-            leader->map_changed(builder.map(), report.changed_slots, report.updated_surfaces);
+            space.update(report.changed_slots, report.updated_surfaces);
             const TextbookCaster caster(builder.map(),
                                         prediction_reach(paper_raster(), voxel_size_m));
             SameWay same_way(std::make_shared<CastingViewPredictor<TextbookCaster>>(
                                  caster, paper_raster(), icosahedron_orientations()),
                              leader);
             const auto decide_now = [&] {
-              benchmark::DoNotOptimize(decide_next_view(builder.map(), same_way,
-                                                        PlannerParameters(), run->images[i].pose, 1,
-                                                        static_cast<int>(i) + 2, 1, {}));
+              benchmark::DoNotOptimize(
+                  decide_after(space, run->images[i].pose, static_cast<int>(i) + 1, same_way));
             };
             decide_now();
             same_way.learn(false);
@@ -216,23 +216,22 @@ bool same_decision(const std::optional<Decision>& a, const std::optional<Decisio
          a->evaluations == b->evaluations;
 }
 
-// A predictor that has followed the map from the first view on must decide like one that reads it.
+// In a space that has followed the map from the first view on, the fast predictor must decide like
+// the plain one in a space that is derived anew.
 void compare_followed_map(const RecordedRun& run, double voxel_size_m, bool quality,
                           Agreement& with_plain) {
   constexpr std::size_t kViews = 12;
   MapBuilder builder({voxel_size_m}, run.window);
-  const auto followed = fast_predictor(voxel_size_m, quality, 1);
+  KnownSpace followed(builder.map(), KnownSpace::Surfaces::Keep);
+  const auto fast = fast_predictor(voxel_size_m, quality, 1);
   PlainViewPredictor plain(paper_raster(), voxel_size_m, icosahedron_orientations(), quality);
-  PlannerParameters parameters;
-  parameters.use_quality = quality;
   for (std::size_t i = 0; i < kViews; ++i) {
     const FoldReport& report = builder.fold(run.images[i]);
-    followed->map_changed(builder.map(), report.changed_slots, report.updated_surfaces);
-    const auto decide_by = [&](ViewPredictor& predictor) {
-      return decide_next_view(builder.map(), predictor, parameters, run.images[i].pose, 1,
-                              static_cast<int>(i) + 2, 1, {});
-    };
-    with_plain.compare(same_decision(decide_by(*followed), decide_by(plain)));
+    followed.update(report.changed_slots, report.updated_surfaces);
+    const KnownSpace fresh(builder.map(), KnownSpace::Surfaces::Keep);
+    const int views = static_cast<int>(i) + 1;
+    with_plain.compare(same_decision(decide_after(followed, run.images[i].pose, views, *fast),
+                                     decide_after(fresh, run.images[i].pose, views, plain)));
   }
 }
 

@@ -1,8 +1,12 @@
 #include "bench/exploration.h"
 
+#include <limits>
 #include <numbers>
+#include <utility>
 
 #include "bench/stopwatch.h"
+#include "planner/prediction/fast_view_predictor.h"
+#include "planner/prediction/orientations.h"
 #include "sensor_sim/scan.h"
 
 namespace nextview {
@@ -14,32 +18,39 @@ TiltedLineScan sensor_for(double voxel_size_m) {
                               : TiltedLineScan::with_aperture(320, 150, kAperture_rad);
 }
 
+std::unique_ptr<Strategy> paper_strategy(const ExplorationParameters& parameters, int threads) {
+  auto predictor = std::make_unique<FastViewPredictor>(
+      prediction_raster(TiltedLineScan::paper(), RangeLimits()), parameters.voxel_size_m,
+      icosahedron_orientations(), parameters.planner.use_quality, threads);
+  return std::make_unique<PaperStrategy>(parameters.planner, StopParameters(),
+                                         parameters.voxel_size_m, std::move(predictor));
+}
+
 Exploration::Exploration(const BenchScene& scene, const ExplorationParameters& parameters)
+    : Exploration(scene, parameters, paper_strategy(parameters)) {}
+
+Exploration::Exploration(const BenchScene& scene, const ExplorationParameters& parameters,
+                         std::unique_ptr<Strategy> strategy)
     : scene_(scene),
       parameters_(parameters),
       rays_(make_ray_table(parameters.sensor)),
-      builder_({parameters.voxel_size_m},
-               window_around(scene.scene.mesh(), parameters.voxel_size_m)),
+      planner_({parameters.voxel_size_m},
+               window_around(scene.scene.mesh(), parameters.voxel_size_m), std::move(strategy),
+               {.seed = parameters.seed, .max_views = std::numeric_limits<int>::max()}),
       pose_(scene.start) {}
 
-ViewCost Exploration::step(ViewPredictor& predictor) {
+ViewCost Exploration::step() {
   ViewCost cost;
-  cost.view = ++view_;
-  RandomStream no_noise(parameters_.seed, view_, 1, RandomPurpose::RangeNoise);
+  cost.view = planner_.views() + 1;
+  RandomStream no_noise(parameters_.seed, cost.view, 1, RandomPurpose::RangeNoise);
   image_ = scan(scene_.scene, rays_, RangeLimits(), pose_, 0.0, no_noise);
-  const FoldReport* report = nullptr;
-  cost.fold_s = wall_s([&] { report = &builder_.fold(image_); });
-  cost.digest_s = wall_s([&] { builder_.digest(); });
-  const VoxelMap& map = builder_.map();
-  cost.field_s =
-      wall_s([&] { predictor.map_changed(map, report->changed_slots, report->updated_surfaces); });
-  std::optional<Decision> decision;
-  cost.decision_s = wall_s([&] {
-    decision = decide_next_view(map, predictor, parameters_.planner, pose_, parameters_.seed,
-                                view_ + 1, 1, {});
-  });
-  cost.moved = decision.has_value();
-  if (decision) {
+  cost.fold_s = wall_s([&] { planner_.fold(image_); });
+  cost.digest_s = wall_s([&] { planner_.builder().digest(); });
+  cost.field_s = wall_s([&] { planner_.space(); });
+  const Decision* decision = nullptr;
+  cost.decision_s = wall_s([&] { decision = std::get_if<Decision>(&planner_.next_view()); });
+  cost.moved = decision != nullptr;
+  if (decision != nullptr) {
     cost.evaluations = decision->evaluations;
     pose_ = decision->pose;
   } else {
@@ -49,8 +60,8 @@ ViewCost Exploration::step(ViewPredictor& predictor) {
 }
 
 void Exploration::carry_elsewhere() {
-  const VoxelMap& map = builder_.map();
-  RandomStream random(parameters_.seed, view_, 1, RandomPurpose::InitialSimplex);
+  const VoxelMap& map = planner_.map();
+  RandomStream random(parameters_.seed, views(), 1, RandomPurpose::InitialSimplex);
   constexpr int kDraws = 100000;
   for (int draw = 0; draw < kDraws; ++draw) {
     VoxelIndex voxel = map.window().min;

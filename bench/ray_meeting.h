@@ -58,7 +58,7 @@ class CastingViewPredictor : public ViewPredictor {
         rays_(world_rays(raster, this->orientations())),
         rays_per_view_(raster.rays.pixels()) {}
 
-  void predict(const VoxelMap&, const VoxelIndex& sensor,
+  void predict(const KnownSpace&, const VoxelIndex& sensor,
                std::span<ViewCounts> per_orientation) override {
     for (std::size_t i = 0; i < per_orientation.size(); ++i) {
       std::int64_t met[4] = {0, 0, 0, 0};
@@ -68,8 +68,6 @@ class CastingViewPredictor : public ViewPredictor {
       per_orientation[i] = {met[0], met[1], met[2], met[3], 0, 0, 0};
     }
   }
-  void map_changed(const VoxelMap&, std::span<const std::uint32_t>,
-                   std::span<const std::uint32_t>) override {}
 
  private:
   const Caster& caster_;

@@ -66,8 +66,6 @@ int explore(const std::string& name, double voxel_size_m, int views) {
   parameters.voxel_size_m = voxel_size_m;
   parameters.sensor = sensor_for(std::min(voxel_size_m, 0.02));
   parameters.planner.step_max_m = 3.0;  // larger strides: the point is to see much
-  FastViewPredictor predictor(prediction_raster(TiltedLineScan::paper(), RangeLimits()),
-                              voxel_size_m, icosahedron_orientations(), false);
   Exploration exploration(scene, parameters);
   const VoxelIndex size = exploration.builder().map().window().size;
   std::printf("\n%s, %s voxels, window %d x %d x %d, sensor %d x %d, quality off\n", name.c_str(),
@@ -80,7 +78,7 @@ int explore(const std::string& name, double voxel_size_m, int views) {
   int idle_views = 0;
   for (int view = 1; view <= views; ++view) {
     const double before_m3 = seen_m3(exploration);
-    const ViewCost cost = exploration.step(predictor);
+    const ViewCost cost = exploration.step();
     idle_views = seen_m3(exploration) < 1.002 * before_m3 ? idle_views + 1 : 0;
     if (idle_views == kPatience) {
       exploration.carry_elsewhere();

@@ -2,12 +2,9 @@
 
 #include <algorithm>
 #include <memory>
-#include <optional>
 #include <utility>
 
 #include "lcmtypes/decode.h"
-#include "mapper/map_builder.h"
-#include "mapper/mapper_config.h"
 #include "planner/goal_message.h"
 #include "planner/planner_config.h"
 
@@ -45,54 +42,34 @@ bool same_search(const search_t& logged, search_t decided) {
   return encode(logged) == encode(decided);
 }
 
-/// Decides again, on the map as it was.
-class PlannerReplay {
- public:
-  PlannerReplay(const RunRecord& record, ReplayReport& report)
-      : record_(record),
-        report_(report),
-        parameters_(planner_parameters_of(*record.config())),
-        predictor_(make_predictor(*record.config())) {}
-
-  void map_changed(const VoxelMap& map, const FoldReport& fold) {
-    predictor_->map_changed(map, fold.changed_slots, fold.updated_surfaces);
-  }
-
-  /// All attempts of a view: false, and why in the report, when one differs.
-  bool decide_view(const VoxelMap& map, const SensorPose& present, int view, int attempts) {
-    std::vector<SensorPose> refused;
-    for (int attempt = 1; attempt <= attempts; ++attempt) {
-      const goal_t* goal = record_.goal(view, attempt);
-      const std::optional<Decision> decision = decide_next_view(
-          map, *predictor_, parameters_, present, record_.config()->seed, view, attempt, refused);
-      if (!decision || !goal) {
-        if (!decision && !goal && record_.ends_without_goal()) return true;
-        return disagree(view, attempt, decision ? "is not in the log" : "is found no more");
-      }
-      const std::string what = difference(*goal, goal_message(*decision));
-      if (!what.empty()) return disagree(view, attempt, "differs in " + what);
-      const search_t* search = record_.search(view, attempt);
-      if (!search || !same_search(*search, search_message(*decision))) {
-        return disagree(view, attempt, "differs in what was tried on the way to it");
-      }
-      refused.push_back(decision->pose);
-      ++report_.goals;
-    }
-    return true;
-  }
-
- private:
-  bool disagree(int view, int attempt, const std::string& how) {
-    report_.disagreement =
+/// Decides all attempts of a view again, on the map as it was: false, and why in the report, when
+/// one differs.
+bool decide_view(const RunRecord& record, ViewPlanner& planner, int view, int attempts,
+                 ReplayReport& report) {
+  const auto disagree = [&](int attempt, const std::string& how) {
+    report.disagreement =
         of_view(view) + ": the goal of attempt " + std::to_string(attempt) + " " + how;
     return false;
+  };
+  for (int attempt = 1; attempt <= attempts; ++attempt) {
+    if (attempt > 1) planner.refuse();
+    const goal_t* goal = record.goal(view, attempt);
+    const NextView& next = planner.next_view();
+    const auto* decision = std::get_if<Decision>(&next);
+    if (!decision || !goal) {
+      if (!decision && !goal && record.ends_without_goal()) return true;
+      return disagree(attempt, decision ? "is not in the log" : "is found no more");
+    }
+    const std::string what = difference(*goal, goal_message(*decision));
+    if (!what.empty()) return disagree(attempt, "differs in " + what);
+    const search_t* search = record.search(view, attempt);
+    if (!search || !same_search(*search, search_message(*decision))) {
+      return disagree(attempt, "differs in what was tried on the way to it");
+    }
+    ++report.goals;
   }
-
-  const RunRecord& record_;
-  ReplayReport& report_;
-  PlannerParameters parameters_;
-  std::unique_ptr<ViewPredictor> predictor_;
-};
+  return true;
+}
 
 /// What keeps a log from being replayed at all.
 std::string unfit(const RunLog& log) {
@@ -110,14 +87,10 @@ ReplayReport replay(const RunLog& log, const ReplayOptions& options) {
   report.disagreement = unfit(log);
   if (!report.disagreement.empty()) return report;
   const RunRecord& record = log.record();
-  const run_config_t& config = *record.config();
   if (record.stop()) report.stop_reason = record.stop()->stop_reason;
   const int views = record.stop() ? record.stop()->views : record.latest_view();
 
-  MapBuilder builder(grid_of(config), window_of(config));
-  std::optional<PlannerReplay> planner;
-  if (options.planner) planner.emplace(record, report);
-  SensorPose present;
+  const std::unique_ptr<ViewPlanner> planner = make_view_planner(*record.config());
   for (int view = 1; view <= views; ++view) {
     const auto missing = record.missing_of_view(view);
     if (!missing.empty()) {
@@ -125,15 +98,12 @@ ReplayReport replay(const RunLog& log, const ReplayOptions& options) {
       return report;
     }
     const commit_t& commit = *record.commit(view);
-    if (planner && view > 1 &&
-        !planner->decide_view(builder.map(), present, view, commit.attempt)) {
+    if (options.planner && view > 1 &&
+        !decide_view(record, *planner, view, commit.attempt, report)) {
       return report;
     }
-    const RangeImage& image = record.range_image(view, commit.attempt)->received.image;
-    const FoldReport& fold = builder.fold(image);
-    if (planner) planner->map_changed(builder.map(), fold);
-    present = image.pose;
-    const std::string digest = builder.digest();
+    planner->fold(record.range_image(view, commit.attempt)->received.image);
+    const std::string digest = planner->builder().digest();
     if (digest != commit.map_digest) {
       report.disagreement = of_view(view) + ": the map rebuilt has digest " + digest +
                             ", the one committed had " + commit.map_digest;
@@ -145,8 +115,8 @@ ReplayReport replay(const RunLog& log, const ReplayOptions& options) {
     report.disagreement = of_view(views + 1) + ": the log breaks off, it holds no end of the run";
     return report;
   }
-  if (planner && record.ends_without_goal()) {
-    planner->decide_view(builder.map(), present, views + 1, record.stop()->final_attempt);
+  if (options.planner && record.ends_without_goal()) {
+    decide_view(record, *planner, views + 1, record.stop()->final_attempt, report);
   }
   return report;
 }

@@ -87,11 +87,8 @@ std::vector<VoxelIndex> voxels_along(const VoxelGrid& grid, const Eigen::Vector3
 
 FeasibleSpace::FeasibleSpace(const VoxelMap& map, const FeasibilityParameters& parameters,
                              const Eigen::Vector3d& present_m, std::span<const SensorPose> refused,
-                             FreeDistance free_distance)
-    : map_(map),
-      parameters_(parameters),
-      present_m_(present_m),
-      free_distance_(std::move(free_distance)) {
+                             const FreeSpaceField* field)
+    : map_(map), parameters_(parameters), present_m_(present_m), field_(field) {
   parameters.check();
   present_ = map.grid().voxel_of(present_m);
   if (!map.contains(present_)) {
@@ -178,7 +175,7 @@ bool FeasibleSpace::path_clear(const Eigen::Vector3d& position_m) {
 
 FeasibleSpace::Surroundings FeasibleSpace::surroundings(const VoxelIndex& voxel,
                                                         const VoxelIndex* clear_neighbour) {
-  const int free_distance = free_distance_ ? free_distance_(voxel) : 0;
+  const int free_distance = field_ != nullptr ? field_->free_distance(voxel) : 0;
   if (free_distance > reach_) return {clear_, false};
   const auto [entry, inserted] = known_.try_emplace(map_.slot(voxel));
   Surroundings& result = entry->second;

@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <array>
-#include <functional>
 #include <limits>
 #include <memory_resource>
 #include <span>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "mapper/voxel_map.h"
+#include "planner/prediction/free_space_field.h"
 #include "sensor/sensor_pose.h"
 
 namespace nextview {
@@ -84,19 +84,15 @@ std::vector<VoxelIndex> voxels_along(const VoxelGrid& grid, const Eigen::Vector3
 /// from the present position to the refused goal, where that is less).
 class FeasibleSpace {
  public:
-  /// For a voxel a Chebyshev distance (the larger of |di|, |dj|, |dk|) within which everything is
-  /// Empty: all voxels that are nearer than that. 0 when it is not known without looking.
-  using FreeDistance = std::function<int(const VoxelIndex&)>;
-
   /// The map must outlive this object and not change.
   /// @param present_m where the sensor is, inside the map's window
   /// @param refused goals of this view the base has refused
-  /// @param free_distance saves looking around where nothing is near; the answers do not depend on
-  /// it
+  /// @param field of the map; saves looking around where nothing is near. The answers do not depend
+  ///        on it.
   /// @throws std::invalid_argument for parameters that cannot be or a present position outside
   FeasibleSpace(const VoxelMap& map, const FeasibilityParameters& parameters,
                 const Eigen::Vector3d& present_m, std::span<const SensorPose> refused,
-                FreeDistance free_distance = {});
+                const FreeSpaceField* field = nullptr);
 
   /// Whether the sensor may be at a position and get there straight from where it is.
   bool reachable(const Eigen::Vector3d& position_m);
@@ -137,7 +133,7 @@ class FeasibleSpace {
   int body_;       // the same for the body radius
   int departure_;  // and for the departure
   int reach_;      // the largest of |di|, |dj|, |dk| that is looked at
-  FreeDistance free_distance_;
+  const FreeSpaceField* field_;
   std::vector<Offset> offsets_;  // of all voxels nearer than clearance or body radius, by shell
   std::array<std::vector<Offset>, 6> entered_;  // those a step along an axis brings near, by step
   std::pmr::monotonic_buffer_resource memory_;  // of known_, which only grows

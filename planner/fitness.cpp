@@ -19,7 +19,7 @@ double quality_factor(const ViewCounts& counts) {
   return share_improved * mean_improvement;
 }
 
-Fitness fitness(const ViewCounts& counts, bool use_quality) {
+Fitness fitness(const ViewCounts& counts, const FactorWeights& weights) {
   Fitness result;
   const std::int64_t met = counts.occupied + counts.occlusion_plane + counts.unseen;
   const std::int64_t rays = met + counts.open;
@@ -33,10 +33,13 @@ Fitness fitness(const ViewCounts& counts, bool use_quality) {
   result.share_occupied = share(counts.occupied);
   result.share_occlusion_plane = share(counts.occlusion_plane);
   result.share_unseen = share(counts.unseen);
-  if (use_quality) result.quality_factor = quality_factor(counts);
-  result.value = area_fitness(result.share_occupied, result.share_occlusion_plane,  // eq. 4
-                              result.share_unseen) *
-                 (1.0 + result.quality_factor);
+  result.value =
+      area_fitness(result.share_occupied, result.share_occlusion_plane, result.share_unseen);
+  for (std::size_t i = 0; i < kFactors.size(); ++i) {  // eq. 4
+    if (weights[i] == 0.0) continue;
+    result.factors[i] = kFactors[i].of(counts);
+    result.value *= 1.0 + weights[i] * result.factors[i];
+  }
   return result;
 }
 

@@ -24,7 +24,7 @@ goal_t goal_message(const Decision& decision) {
   goal.share_occlusion_plane = decision.fitness.share_occlusion_plane;
   goal.share_unseen = decision.fitness.share_unseen;
   goal.share_open = decision.fitness.share_open;
-  goal.quality_factor = decision.fitness.quality_factor;
+  goal.quality_factor = decision.fitness.factors[kQualityFactor];
   goal.iterations = decision.iterations;
   goal.evaluations = decision.evaluations;
   return goal;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "lcmtypes/channels.h"
-#include "planner/next_view.h"
+#include "planner/decision.h"
 
 namespace nextview {
 

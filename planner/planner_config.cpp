@@ -1,11 +1,14 @@
 #include "planner/planner_config.h"
 
+#include "mapper/mapper_config.h"
+#include "planner/paper_strategy.h"
 #include "planner/prediction/fast_view_predictor.h"
 #include "planner/prediction/orientations.h"
 #include "planner/prediction/panorama_view_predictor.h"
 #include "sensor/sensor_config.h"
 
 namespace nextview {
+namespace {
 
 PlannerParameters planner_parameters_of(const run_config_t& config) {
   PlannerParameters parameters;
@@ -25,13 +28,14 @@ PlannerParameters planner_parameters_of(const run_config_t& config) {
 }
 
 StopParameters stop_parameters_of(const run_config_t& config) {
-  return {.max_views = config.max_views,
-          .use_quality = config.use_quality != 0,
+  return {.use_quality = config.use_quality != 0,
           .quality_threshold = config.quality_threshold,
           .stop_window_views = config.stop_window_views,
           .stop_new_area_m2 = config.stop_new_area_m2};
 }
 
+/// Every ray of every orientation, or with more than 20 orientations and quality off one panorama
+/// that answers them all.
 std::unique_ptr<ViewPredictor> make_predictor(const run_config_t& config) {
   const PredictionRaster raster = prediction_raster(sensor_of(config), range_limits_of(config));
   int subdivisions = 0;
@@ -44,6 +48,20 @@ std::unique_ptr<ViewPredictor> make_predictor(const run_config_t& config) {
   }
   return std::make_unique<FastViewPredictor>(raster, config.voxel_size_m, std::move(orientations),
                                              use_quality, config.threads);
+}
+
+std::unique_ptr<Strategy> make_strategy(const run_config_t& config) {
+  return std::make_unique<PaperStrategy>(planner_parameters_of(config), stop_parameters_of(config),
+                                         config.voxel_size_m, make_predictor(config));
+}
+
+}  // namespace
+
+std::unique_ptr<ViewPlanner> make_view_planner(const run_config_t& config) {
+  return std::make_unique<ViewPlanner>(
+      grid_of(config), window_of(config), make_strategy(config),
+      ViewPlanner::Parameters{
+          .seed = config.seed, .max_views = config.max_views, .threads = config.threads});
 }
 
 SensorPose start_pose_of(const run_config_t& config) {

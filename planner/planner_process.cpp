@@ -15,14 +15,7 @@ double seconds_between(std::chrono::steady_clock::time_point start,
 }  // namespace
 
 PlannerProcess::PlannerProcess(Bus& bus, const run_config_t& config)
-    : bus_(bus),
-      config_(config),
-      parameters_(planner_parameters_of(config)),
-      stop_parameters_(stop_parameters_of(config)),
-      builder_(grid_of(config), window_of(config)),
-      predictor_(make_predictor(config)) {
-  parameters_.check();
-  stop_parameters_.check();
+    : bus_(bus), config_(config), planner_(make_view_planner(config)) {
   subscribe();
 }
 
@@ -62,8 +55,8 @@ bool PlannerProcess::step() {
     finish_view(commit->second);
     return true;
   }
-  if (!planned_ahead_ && !to_stop_) {
-    plan(view_ + 1, 1);
+  if (!planned_ahead_) {
+    plan();
     planned_ahead_ = true;
     idle_since_ = Clock::now();
     return true;
@@ -74,15 +67,9 @@ bool PlannerProcess::step() {
 void PlannerProcess::fold(const ReceivedRangeImage& received) {
   const auto start = Clock::now();
   wait_wall_s_ = seconds_between(idle_since_, start);
-  const FoldReport& report = builder_.fold(received.image);
-  predictor_->map_changed(builder_.map(), report.changed_slots, report.updated_surfaces);
-  digest_ = builder_.digest();
-  views_.push_back(
-      view_facts(report.newly_occupied, config_.voxel_size_m, builder_.statistics().min_quality));
-  to_stop_ = should_stop(views_, stop_parameters_);
-  present_ = received.image.pose;
+  planner_->fold(received.image);
+  digest_ = planner_->builder().digest();
   utime_ = received.utime;
-  refused_.clear();
   folded_ = true;
   idle_since_ = Clock::now();
   fold_wall_s_ = seconds_between(start, idle_since_);
@@ -95,22 +82,16 @@ void PlannerProcess::finish_view(const commit_t& commit) {
                                          commit.map_digest + ", the planner's " + digest_);
     return;
   }
-  if (to_stop_) {
-    attempt_ = 0;
-    stop(*to_stop_, std::string(describe(*to_stop_)));
-    return;
-  }
   ++view_;
   attempt_ = 1;
   folded_ = false;
-  if (!planned_ahead_) plan(view_, attempt_);
+  if (!planned_ahead_) plan();
   planned_ahead_ = false;
-  publish_decision();
+  publish_next();
 }
 
 void PlannerProcess::refused(const arrival_t& arrival) {
   utime_ = arrival.utime;
-  refused_.push_back(goal_);
   if (view_ == 1 || attempt_ >= config_.max_attempts) {
     stop(StopReason::NoFeasibleGoal, "view " + std::to_string(view_) + ": the base refused " +
                                          std::to_string(attempt_) +
@@ -118,28 +99,31 @@ void PlannerProcess::refused(const arrival_t& arrival) {
     return;
   }
   ++attempt_;
-  plan(view_, attempt_);
-  publish_decision();
+  planner_->refuse();
+  plan();
+  publish_next();
 }
 
-void PlannerProcess::plan(int view, int attempt) {
+void PlannerProcess::plan() {
   const auto start = Clock::now();
-  decision_ = decide_next_view(builder_.map(), *predictor_, parameters_, present_, config_.seed,
-                               view, attempt, refused_);
+  planner_->next_view();
   plan_wall_s_ = seconds_between(start, Clock::now());
 }
 
-void PlannerProcess::publish_decision() {
-  if (!decision_) {
-    stop(StopReason::NoFeasibleGoal,
-         "view " + std::to_string(view_) + ": no position is feasible from the last one");
+void PlannerProcess::publish_next() {
+  const NextView& next = planner_->next_view();
+  if (const Ending* ending = std::get_if<Ending>(&next)) {
+    // Of the view that is not reached only a search that found nothing counts as an attempt.
+    if (ending->reason != StopReason::NoFeasibleGoal) attempt_ = 0;
+    stop(ending->reason, ending->detail);
     return;
   }
-  goal_t goal = goal_message(*decision_);
+  const Decision& decision = std::get<Decision>(next);
+  goal_t goal = goal_message(decision);
   goal.plan_wall_s = plan_wall_s_;
   publish_goal(std::move(goal));
 
-  search_t search = search_message(*decision_);
+  search_t search = search_message(decision);
   search.utime = utime_;
   search.view = view_;
   search.attempt = attempt_;
@@ -152,7 +136,6 @@ void PlannerProcess::publish_goal(goal_t goal) {
   goal.utime = utime_;
   goal.view = view_;
   goal.attempt = attempt_;
-  goal_ = {Eigen::Vector3d(goal.position_m), goal.pan_rad, goal.tilt_rad};
   bus_.publish(std::move(goal));
   idle_since_ = Clock::now();
 }
@@ -160,7 +143,7 @@ void PlannerProcess::publish_goal(goal_t goal) {
 void PlannerProcess::stop(StopReason reason, const std::string& detail) {
   stop_t message{};
   message.utime = utime_;
-  message.views = static_cast<std::int32_t>(views_.size());
+  message.views = planner_->views();
   message.final_attempt = attempt_;
   message.fold_wall_s = fold_wall_s_;
   message.wait_wall_s = wait_wall_s_;

@@ -9,10 +9,7 @@
 #include <vector>
 
 #include "lcmtypes/bus_process.h"
-#include "mapper/map_builder.h"
-#include "planner/next_view.h"
-#include "planner/prediction/view_predictor.h"
-#include "planner/termination.h"
+#include "planner/view_planner.h"
 #include "sensor/range_image_message.h"
 
 namespace nextview {
@@ -41,18 +38,15 @@ class PlannerProcess : public BusProcess {
   void fold(const ReceivedRangeImage& received);
   void finish_view(const commit_t& commit);
   void refused(const arrival_t& arrival);
-  /// Decides on the present map; the bus hears of it from publish_decision.
-  void plan(int view, int attempt);
-  void publish_decision();
+  /// Decides what comes next; the bus hears of it from publish_next.
+  void plan();
+  void publish_next();
   void publish_goal(goal_t goal);
   void stop(StopReason reason, const std::string& detail);
 
   Bus& bus_;
   run_config_t config_;
-  PlannerParameters parameters_;
-  StopParameters stop_parameters_;
-  MapBuilder builder_;
-  std::unique_ptr<ViewPredictor> predictor_;
+  std::unique_ptr<ViewPlanner> planner_;
 
   // What has come and waits for its turn.
   RangeImageAssembler assembler_;
@@ -68,13 +62,7 @@ class PlannerProcess : public BusProcess {
   bool planned_ahead_ = false;
   bool ended_ = false;
   std::int64_t utime_ = 0;
-  SensorPose present_;                 // of the last range image folded
-  SensorPose goal_;                    // of the present attempt
-  std::vector<SensorPose> refused_;    // goals of the present view
-  std::vector<ViewFacts> views_;       // folded
-  std::optional<StopReason> to_stop_;  // once the commit of the last of them has come
-  std::string digest_;                 // of the map after the last fold
-  std::optional<Decision> decision_;   // the last one; nothing when no position is feasible
+  std::string digest_;  // of the map after the last fold
   Clock::time_point idle_since_;
   double fold_wall_s_ = 0.0;
   double plan_wall_s_ = 0.0;

@@ -97,7 +97,6 @@ std::string_view describe(StopReason reason) {
 }
 
 void StopParameters::check() const {
-  if (max_views < 1) throw std::invalid_argument("max_views must be at least 1");
   if (!(quality_threshold >= 0.0 && quality_threshold <= 1.0)) {
     throw std::invalid_argument("quality_threshold must lie between 0 and 1");
   }
@@ -117,7 +116,6 @@ std::optional<StopReason> should_stop(std::span<const ViewFacts> views,
     if (!parameters.use_quality) return StopReason::NothingNew;
     if (views.back().min_quality >= parameters.quality_threshold) return StopReason::QualityReached;
   }
-  if (views.size() >= static_cast<std::size_t>(parameters.max_views)) return StopReason::ViewLimit;
   return std::nullopt;
 }
 

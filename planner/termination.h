@@ -33,7 +33,6 @@ std::string_view describe(StopReason reason);
 
 /// When a run has recovered what it can (P23).
 struct StopParameters {
-  int max_views = 60;
   bool use_quality = false;        ///< rule 2 instead of rule 1
   double quality_threshold = 0.8;  ///< rule 2: for every Occupied voxel's quality
   int stop_window_views = 15;      ///< "no more": over this many views ...
@@ -53,8 +52,8 @@ struct ViewFacts {
 /// The facts of a view from the mapper's counts.
 ViewFacts view_facts(std::int64_t newly_occupied_voxels, double voxel_size_m, double min_quality);
 
-/// Whether the run ends after these views, the last one just folded; nothing when it goes on.
-/// A rule of P23 goes before the view limit. Rule 1 needs stop_window_views whole views after the
+/// Whether a rule of P23 ends the run after these views, the last one just folded; nothing when it
+/// goes on. Rule 1 needs stop_window_views whole views after the
 /// first one, which is the scan at the start and says nothing about the planner.
 std::optional<StopReason> should_stop(std::span<const ViewFacts> views,
                                       const StopParameters& parameters);

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base_sim/base.h"
-#include "planner/next_view.h"
+#include "planner/paper_strategy.h"
 #include "planner/termination.h"
 #include "sensor/sensor_geometry.h"
 

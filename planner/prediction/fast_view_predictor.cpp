@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <exception>
 #include <stdexcept>
 
 #include "sensor/sensor_pose.h"
@@ -128,57 +127,22 @@ void FastViewPredictor::make_tables(const PredictionRaster& raster, double voxel
   }
 }
 
-void FastViewPredictor::prepare(const VoxelMap& map) {
-  if (field_ && field_->window() == map.window()) return;
-  field_.emplace(map, threads());
-  surfaces_ = SurfaceTable();
-  if (!counts_quality()) return;
-  std::vector<std::uint32_t> slots;
-  for (std::size_t slot = 0; slot < map.labels().size(); ++slot) {
-    if (map.labels()[slot] == Label::Occupied) slots.push_back(static_cast<std::uint32_t>(slot));
-  }
-  surfaces_.update(map, *field_, slots);
-}
-
-void FastViewPredictor::map_changed(const VoxelMap& map,
-                                    std::span<const std::uint32_t> changed_slots,
-                                    std::span<const std::uint32_t> updated_surfaces) {
-  if (!field_ || field_->window().size != map.window().size) {
-    prepare(map);
-    return;
-  }
-  const VoxelIndex step = map.window().min - field_->window().min;
-  field_->update(map, changed_slots);
-  if (!step.isZero()) surfaces_.move(*field_, step);
-  if (!counts_quality()) return;
-  // A voxel may become Occupied by points that had no normal, and so without surface data.
-  surfaces_.update(map, *field_, changed_slots);
-  surfaces_.update(map, *field_, updated_surfaces);
-}
-
-void FastViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
+void FastViewPredictor::predict(const KnownSpace& space, const VoxelIndex& sensor,
                                 std::span<ViewCounts> per_orientation) {
-  predict_all(map, {&sensor, 1}, per_orientation);
+  predict_all(space, {&sensor, 1}, per_orientation);
 }
 
-void FastViewPredictor::predict_all(const VoxelMap& map, std::span<const VoxelIndex> sensors,
-                                    std::span<ViewCounts> counts,
-                                    const std::function<void()>& meanwhile) {
+void FastViewPredictor::predict_all(const KnownSpace& space, std::span<const VoxelIndex> sensors,
+                                    std::span<ViewCounts> counts) {
   const std::size_t views = orientations().size();
   check_count(sensors.size(), counts.size());
-  for (const VoxelIndex& sensor : sensors) check_arguments(map, sensor, views);
-  if (sensors.empty()) {
-    meanwhile();
-    return;
-  }
-  prepare(map);
+  for (const VoxelIndex& sensor : sensors) check_arguments(space.map(), sensor, views);
   std::fill(counts.begin(), counts.end(), ViewCounts());
   // The tables remember what the rays of one sensor met.
   const std::size_t together = counts_quality() ? 1 : sensors.size();
   for (std::size_t i = 0; i < sensors.size(); i += together) {
-    predict_together(
-        sensors.subspan(i, together), counts.subspan(i * views, together * views),
-        i == 0 ? meanwhile : [] {});
+    predict_together(space, sensors.subspan(i, together),
+                     counts.subspan(i * views, together * views));
   }
 }
 
@@ -197,41 +161,33 @@ void FastViewPredictor::fill_queues(std::size_t jobs) {
   }
 }
 
-void FastViewPredictor::predict_together(std::span<const VoxelIndex> sensors,
-                                         std::span<ViewCounts> counts,
-                                         const std::function<void()>& meanwhile) {
+void FastViewPredictor::predict_together(const KnownSpace& space,
+                                         std::span<const VoxelIndex> sensors,
+                                         std::span<ViewCounts> counts) {
+  const SurfaceTable* const surfaces = counts_quality() ? &space.surfaces() : nullptr;
   fill_queues(sensors.size() * tables_.size());
   std::size_t team = 1;  // there can be fewer threads than were asked for
-  std::exception_ptr thrown;
 #pragma omp parallel num_threads(threads()) if (threads() > 1)
   {
 #pragma omp master
-    {
-      team = static_cast<std::size_t>(omp_get_num_threads());
-      try {
-        meanwhile();
-      } catch (...) {
-        thrown = std::current_exception();
-      }
-    }
+    team = static_cast<std::size_t>(omp_get_num_threads());
     const auto thread = static_cast<std::size_t>(omp_get_thread_num());
     Workspace& workspace = workspaces_[thread];
     workspace.counts.assign(counts.size(), RayCounts());
-    do_jobs(sensors, thread, workspace);
-    if (counts_quality()) {
+    do_jobs(space.field(), sensors, thread, workspace);
+    if (surfaces != nullptr) {
 #pragma omp barrier
 #pragma omp for schedule(dynamic)
       for (std::size_t i = 0; i < counts.size(); ++i) {
-        count_improvements(i, workspace, counts[i]);
+        count_improvements(*surfaces, i, workspace, counts[i]);
       }
     }
   }
-  if (thrown) std::rethrow_exception(thrown);
   add_up(std::span(workspaces_).first(team), counts);
 }
 
-void FastViewPredictor::do_jobs(std::span<const VoxelIndex> sensors, std::size_t thread,
-                                Workspace& workspace) {
+void FastViewPredictor::do_jobs(const FreeSpaceField& field, std::span<const VoxelIndex> sensors,
+                                std::size_t thread, Workspace& workspace) {
   const std::size_t views = orientations().size();
   const std::size_t jobs = sensors.size() * tables_.size();
   const std::size_t first = first_job(thread, jobs);
@@ -239,7 +195,7 @@ void FastViewPredictor::do_jobs(std::span<const VoxelIndex> sensors, std::size_t
     const std::size_t job = (first + i) % jobs;
     const std::size_t sensor = job / tables_.size();
     if (queues_[job].empty()) continue;
-    cast(tables_[job % tables_.size()], queues_[job], sensors[sensor],
+    cast(field, tables_[job % tables_.size()], queues_[job], sensors[sensor],
          &workspace.counts[sensor * views]);
   }
 }
@@ -257,27 +213,27 @@ void FastViewPredictor::add_up(std::span<const Workspace> workspaces,
   }
 }
 
-void FastViewPredictor::cast(Table& table, PacketQueue& queue, const VoxelIndex& sensor,
-                             RayCounts* counts) const {
+void FastViewPredictor::cast(const FreeSpaceField& field, Table& table, PacketQueue& queue,
+                             const VoxelIndex& sensor, RayCounts* counts) const {
   RayOutcomes outcomes;
   outcomes.counts = counts;
   if (counts_quality()) outcomes.occupied_at = table.occupied_at.data();
-  cast_bundle(field_->bytes(), field_->shifts(), static_cast<std::int32_t>(field_->offset(sensor)),
-              field_->steps_from(sensor), table.bundle, queue, outcomes);
+  cast_bundle(field.bytes(), field.shifts(), static_cast<std::int32_t>(field.offset(sensor)),
+              field.steps_from(sensor), table.bundle, queue, outcomes);
 }
 
-void FastViewPredictor::count_improvements(std::size_t orientation, Workspace& workspace,
-                                           ViewCounts& counts) const {
+void FastViewPredictor::count_improvements(const SurfaceTable& surfaces, std::size_t orientation,
+                                           Workspace& workspace, ViewCounts& counts) const {
   for (const auto& [number, packet] : packets_of_[orientation]) {
     const std::int32_t* const occupied_at = &tables_[number].occupied_at[packet * kPacketRays];
     const QuantisedDirection* const rays = &tables_[number].directions[packet * kPacketRays];
     for (std::size_t i = 0; i < kPacketRays; ++i) {
       if (occupied_at[i] < 0) continue;
-      const std::uint32_t surface = surfaces_.number_at(static_cast<std::size_t>(occupied_at[i]));
-      workspace.improvement.add(surface, quantised_cosine(surfaces_[surface].normal, rays[i]));
+      const std::uint32_t surface = surfaces.number_at(static_cast<std::size_t>(occupied_at[i]));
+      workspace.improvement.add(surface, quantised_cosine(surfaces[surface].normal, rays[i]));
     }
   }
-  workspace.improvement.finish(surfaces_, counts);
+  workspace.improvement.finish(surfaces, counts);
 }
 
 }  // namespace nextview

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <optional>
 #include <vector>
 
 #include "planner/prediction/free_space_field.h"
@@ -25,16 +24,10 @@ class FastViewPredictor : public RasterViewPredictor {
   FastViewPredictor(const PredictionRaster& raster, double voxel_size_m,
                     std::vector<Orientation> orientations, bool counts_quality, int threads = 1);
 
-  void predict(const VoxelMap& map, const VoxelIndex& sensor,
+  void predict(const KnownSpace& space, const VoxelIndex& sensor,
                std::span<ViewCounts> per_orientation) override;
-  void predict_all(
-      const VoxelMap& map, std::span<const VoxelIndex> sensors, std::span<ViewCounts> counts,
-      const std::function<void()>& meanwhile = [] {}) override;
-  void map_changed(const VoxelMap& map, std::span<const std::uint32_t> changed_slots,
-                   std::span<const std::uint32_t> updated_surfaces) override;
-  int free_distance(const VoxelIndex& voxel) const override {
-    return field_ ? field_->free_distance(voxel) : 0;
-  }
+  void predict_all(const KnownSpace& space, std::span<const VoxelIndex> sensors,
+                   std::span<ViewCounts> counts) override;
 
  private:
   // Rays of all orientations that drive in the same direction.
@@ -60,23 +53,23 @@ class FastViewPredictor : public RasterViewPredictor {
 
   int threads() const { return static_cast<int>(workspaces_.size()); }
   void make_tables(const PredictionRaster& raster, double voxel_size_m);
-  void prepare(const VoxelMap& map);
-  void predict_together(std::span<const VoxelIndex> sensors, std::span<ViewCounts> counts,
-                        const std::function<void()>& meanwhile);
+  void predict_together(const KnownSpace& space, std::span<const VoxelIndex> sensors,
+                        std::span<ViewCounts> counts);
   void fill_queues(std::size_t jobs);
   // What a thread does of the jobs: its own, then what others have left.
-  void do_jobs(std::span<const VoxelIndex> sensors, std::size_t thread, Workspace& workspace);
+  void do_jobs(const FreeSpaceField& field, std::span<const VoxelIndex> sensors, std::size_t thread,
+               Workspace& workspace);
   void add_up(std::span<const Workspace> workspaces, std::span<ViewCounts> counts) const;
-  void cast(Table& table, PacketQueue& queue, const VoxelIndex& sensor, RayCounts* counts) const;
-  void count_improvements(std::size_t orientation, Workspace& workspace, ViewCounts& counts) const;
+  void cast(const FreeSpaceField& field, Table& table, PacketQueue& queue, const VoxelIndex& sensor,
+            RayCounts* counts) const;
+  void count_improvements(const SurfaceTable& surfaces, std::size_t orientation,
+                          Workspace& workspace, ViewCounts& counts) const;
 
   std::int64_t rays_per_view_;
   std::array<Table, 6> tables_;                        // by driving axis and sign
   std::vector<std::vector<PacketOfView>> packets_of_;  // by orientation; for f_quality only
-  std::optional<FreeSpaceField> field_;                // of the map of the last call
-  SurfaceTable surfaces_;
-  std::vector<Workspace> workspaces_;  // by thread
-  std::vector<PacketQueue> queues_;    // by job
+  std::vector<Workspace> workspaces_;                  // by thread
+  std::vector<PacketQueue> queues_;                    // by job
 };
 
 }  // namespace nextview

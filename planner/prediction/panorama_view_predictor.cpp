@@ -118,16 +118,6 @@ void PanoramaViewPredictor::append_view(const RayTable& rays, const Orientation&
   views_.push_back({begin, static_cast<std::uint32_t>(weights_.size())});
 }
 
-void PanoramaViewPredictor::map_changed(const VoxelMap& map,
-                                        std::span<const std::uint32_t> changed_slots,
-                                        std::span<const std::uint32_t>) {
-  if (field_) {
-    field_->update(map, changed_slots);
-  } else {
-    field_.emplace(map, threads_);
-  }
-}
-
 // Compiled once more for processors that count bits in one instruction.
 [[gnu::target_clones("popcnt", "default")]] ViewCounts PanoramaViewPredictor::count(
     const Panorama& panorama, bool any_open, const WeightWord* begin, const WeightWord* end) {
@@ -156,17 +146,16 @@ bool PanoramaViewPredictor::any_is_open() const {
   return false;
 }
 
-void PanoramaViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
+void PanoramaViewPredictor::predict(const KnownSpace& space, const VoxelIndex& sensor,
                                     std::span<ViewCounts> per_orientation) {
-  check_arguments(map, sensor, per_orientation.size());
-  if (!field_ || field_->window() != map.window()) field_.emplace(map, threads_);
+  check_arguments(space.map(), sensor, per_orientation.size());
   for (auto* bits : {&panorama_.occupied, &panorama_.occlusion_plane, &panorama_.unseen}) {
     bits->assign(kWords, 0);
   }
 #pragma omp parallel num_threads(threads_) if (threads_ > 1)
   {
 #pragma omp for schedule(dynamic)
-    for (std::size_t face = 0; face < faces_.size(); ++face) cast_face(face, sensor);
+    for (std::size_t face = 0; face < faces_.size(); ++face) cast_face(space.field(), face, sensor);
     const bool any_open = any_is_open();
 #pragma omp for schedule(dynamic, 16)
     for (std::size_t i = 0; i < views_.size(); ++i) {
@@ -179,7 +168,8 @@ void PanoramaViewPredictor::predict(const VoxelMap& map, const VoxelIndex& senso
   }
 }
 
-void PanoramaViewPredictor::cast_face(std::size_t face, const VoxelIndex& sensor) {
+void PanoramaViewPredictor::cast_face(const FreeSpaceField& field, std::size_t face,
+                                      const VoxelIndex& sensor) {
   const std::size_t word = face * kSide * kSide / 64;
   PacketQueue packets;
   packets.refill(faces_[face].packets.size(), faces_[face].packets.size());
@@ -187,8 +177,8 @@ void PanoramaViewPredictor::cast_face(std::size_t face, const VoxelIndex& sensor
   outcomes.occupied = reinterpret_cast<std::uint8_t*>(&panorama_.occupied[word]);
   outcomes.occlusion_plane = reinterpret_cast<std::uint8_t*>(&panorama_.occlusion_plane[word]);
   outcomes.unseen = reinterpret_cast<std::uint8_t*>(&panorama_.unseen[word]);
-  cast_bundle(field_->bytes(), field_->shifts(), static_cast<std::int32_t>(field_->offset(sensor)),
-              field_->steps_from(sensor), faces_[face], packets, outcomes);
+  cast_bundle(field.bytes(), field.shifts(), static_cast<std::int32_t>(field.offset(sensor)),
+              field.steps_from(sensor), faces_[face], packets, outcomes);
 }
 
 }  // namespace nextview

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <optional>
 #include <vector>
 
 #include "planner/prediction/free_space_field.h"
@@ -33,13 +32,8 @@ class PanoramaViewPredictor : public RasterViewPredictor {
   PanoramaViewPredictor(const PredictionRaster& raster, double voxel_size_m,
                         std::vector<Orientation> orientations, int threads = 1);
 
-  void predict(const VoxelMap& map, const VoxelIndex& sensor,
+  void predict(const KnownSpace& space, const VoxelIndex& sensor,
                std::span<ViewCounts> per_orientation) override;
-  void map_changed(const VoxelMap& map, std::span<const std::uint32_t> changed_slots,
-                   std::span<const std::uint32_t> updated_surfaces) override;
-  int free_distance(const VoxelIndex& voxel) const override {
-    return field_ ? field_->free_distance(voxel) : 0;
-  }
 
  private:
   static constexpr int kCells = 6 * kFaceSide * kFaceSide;
@@ -61,7 +55,7 @@ class PanoramaViewPredictor : public RasterViewPredictor {
     std::vector<std::uint64_t> unseen;
   };
 
-  void cast_face(std::size_t face, const VoxelIndex& sensor);
+  void cast_face(const FreeSpaceField& field, std::size_t face, const VoxelIndex& sensor);
   void append_view(const RayTable& rays, const Orientation& orientation);
   static ViewCounts count(const Panorama& panorama, bool any_open, const WeightWord* begin,
                           const WeightWord* end);
@@ -72,7 +66,6 @@ class PanoramaViewPredictor : public RasterViewPredictor {
   std::vector<WeightWord> weights_;
   std::vector<View> views_;
   Panorama panorama_;
-  std::optional<FreeSpaceField> field_;
   int threads_;
 };
 

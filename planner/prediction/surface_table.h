@@ -9,7 +9,8 @@
 
 #include "mapper/voxel_map.h"
 #include "planner/prediction/free_space_field.h"
-#include "planner/prediction/view_predictor.h"
+#include "planner/prediction/predicted_quality.h"
+#include "planner/prediction/view_counts.h"
 
 namespace nextview {
 

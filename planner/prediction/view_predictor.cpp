@@ -21,21 +21,6 @@ double prediction_reach(const PredictionRaster& raster, double voxel_size_m) {
                     static_cast<double>(IntegerLine::kMaxSteps));
 }
 
-QuantisedDirection quantise_direction(const Eigen::Vector3d& direction) {
-  QuantisedDirection quantised;
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    quantised[axis] = static_cast<std::int16_t>(
-        std::lround(direction[static_cast<int>(axis)] * SurfaceVoxel::kNormalUnit));
-  }
-  return quantised;
-}
-
-std::uint16_t predicted_quality(std::int32_t cosine) {
-  const std::int64_t rounded =
-      (std::int64_t{cosine} * SurfaceVoxel::kQualityUnit + (std::int64_t{1} << 27)) >> 28;
-  return static_cast<std::uint16_t>(std::min<std::int64_t>(rounded, SurfaceVoxel::kQualityUnit));
-}
-
 void ViewPredictor::check_count(std::size_t sensors, std::size_t counts) const {
   if (counts == sensors * orientations().size()) return;
   throw std::invalid_argument(std::to_string(counts) + " counts for " + std::to_string(sensors) +
@@ -43,14 +28,12 @@ void ViewPredictor::check_count(std::size_t sensors, std::size_t counts) const {
                               " orientations each");
 }
 
-void ViewPredictor::predict_all(const VoxelMap& map, std::span<const VoxelIndex> sensors,
-                                std::span<ViewCounts> counts,
-                                const std::function<void()>& meanwhile) {
+void ViewPredictor::predict_all(const KnownSpace& space, std::span<const VoxelIndex> sensors,
+                                std::span<ViewCounts> counts) {
   check_count(sensors.size(), counts.size());
-  meanwhile();
   const std::size_t views = orientations().size();
   for (std::size_t i = 0; i < sensors.size(); ++i) {
-    predict(map, sensors[i], counts.subspan(i * views, views));
+    predict(space, sensors[i], counts.subspan(i * views, views));
   }
 }
 
@@ -94,8 +77,9 @@ PlainViewPredictor::PlainViewPredictor(const PredictionRaster& raster, double vo
   }
 }
 
-void PlainViewPredictor::predict(const VoxelMap& map, const VoxelIndex& sensor,
+void PlainViewPredictor::predict(const KnownSpace& space, const VoxelIndex& sensor,
                                  std::span<ViewCounts> per_orientation) {
+  const VoxelMap& map = space.map();
   check_arguments(map, sensor, per_orientation.size());
   for (std::size_t i = 0; i < per_orientation.size(); ++i) {
     const auto rays = std::span<const Ray>(rays_).subspan(i * rays_per_view_, rays_per_view_);

@@ -1,16 +1,13 @@
 #pragma once
 
-#include <Eigen/Core>
-#include <array>
 #include <cstdint>
-#include <cstdlib>
-#include <functional>
 #include <span>
 #include <vector>
 
 #include "mapper/integer_line.h"
-#include "mapper/voxel_map.h"
+#include "planner/prediction/known_space.h"
 #include "planner/prediction/orientations.h"
+#include "planner/prediction/predicted_quality.h"
 #include "planner/prediction/view_counts.h"
 #include "sensor/sensor_geometry.h"
 
@@ -30,21 +27,6 @@ PredictionRaster prediction_raster(const TiltedLineScan& sensor, const RangeLimi
 /// IntegerLine::kMaxSteps.
 double prediction_reach(const PredictionRaster& raster, double voxel_size_m);
 
-/// The quality of a predicted view of a voxel (P9, P17) in integers, so that every way of computing
-/// it gives the same. The voxel's mean normal and the ray's direction are rounded to multiples of
-/// 1/SurfaceVoxel::kNormalUnit; |normal . ray| is then an integer of 1/2^28, of which the largest
-/// over a view's rays is taken, and that is rounded to 1/SurfaceVoxel::kQualityUnit.
-using QuantisedDirection = std::array<std::int16_t, 3>;
-/// Rounds a vector of length <= 1; halves go away from zero.
-QuantisedDirection quantise_direction(const Eigen::Vector3d& direction);
-/// |normal . ray|, 1/2^28; below 2^29 for rounded unit vectors, and no intermediate sum is larger.
-inline std::int32_t quantised_cosine(const QuantisedDirection& normal,
-                                     const QuantisedDirection& ray) {
-  return std::abs(normal[0] * ray[0] + normal[1] * ray[1] + normal[2] * ray[2]);
-}
-/// min(kQualityUnit, round(cosine * kQualityUnit / 2^28)).
-std::uint16_t predicted_quality(std::int32_t cosine);
-
 /// Says what the rays of every orientation would meet from a voxel.
 ///
 /// A ray is the integer line from the sensor's voxel along R n_uv with a reach of
@@ -62,29 +44,16 @@ class ViewPredictor {
   /// Fills the counts of every orientation, in the order of orientations().
   /// @throws std::invalid_argument when the sensor's voxel lies outside the window, or the number
   ///         of counts or the map's voxel size is not what the predictor was made for
-  virtual void predict(const VoxelMap& map, const VoxelIndex& sensor,
+  /// @throws std::logic_error when quality is counted and the space keeps no surfaces
+  virtual void predict(const KnownSpace& space, const VoxelIndex& sensor,
                        std::span<ViewCounts> per_orientation) = 0;
 
   /// The same for several sensors: the counts of all orientations for the first, then for the
   /// second, and so on. With threads that takes less time than one after the other.
-  /// @param meanwhile what this thread has to do before it takes part, such as finding out where to
-  ///        predict next
-  /// @throws std::invalid_argument as predict() does, also unless there are as many counts as
+  /// @throws what predict() does; std::invalid_argument also unless there are as many counts as
   ///         sensors times orientations
-  virtual void predict_all(
-      const VoxelMap& map, std::span<const VoxelIndex> sensors, std::span<ViewCounts> counts,
-      const std::function<void()>& meanwhile = [] {});
-
-  /// To be called after every change of the map, with the slots whose label is different and those
-  /// whose surface data is (FoldReport has both), and after every move of its window with what
-  /// MapBuilder::move_window says; a predictor may keep what it derives from them up to date. It
-  /// must be the same map.
-  virtual void map_changed(const VoxelMap& map, std::span<const std::uint32_t> changed_slots,
-                           std::span<const std::uint32_t> updated_surfaces) = 0;
-
-  /// A by-product for FeasibleSpace::FreeDistance, of the map last predicted in or told of: how
-  /// near to a voxel of its window everything is Empty, or 0 when the predictor does not know.
-  virtual int free_distance(const VoxelIndex&) const { return 0; }
+  virtual void predict_all(const KnownSpace& space, std::span<const VoxelIndex> sensors,
+                           std::span<ViewCounts> counts);
 
  protected:
   ViewPredictor(std::vector<Orientation> orientations, bool counts_quality)
@@ -123,10 +92,8 @@ class PlainViewPredictor : public RasterViewPredictor {
   PlainViewPredictor(const PredictionRaster& raster, double voxel_size_m,
                      std::vector<Orientation> orientations, bool counts_quality);
 
-  void predict(const VoxelMap& map, const VoxelIndex& sensor,
+  void predict(const KnownSpace& space, const VoxelIndex& sensor,
                std::span<ViewCounts> per_orientation) override;
-  void map_changed(const VoxelMap&, std::span<const std::uint32_t>,
-                   std::span<const std::uint32_t>) override {}
 
  private:
   struct Ray {

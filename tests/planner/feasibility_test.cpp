@@ -187,8 +187,7 @@ TEST_F(EmptyHall, AgreesWithLookingAllAroundEveryVoxel) {
     }
     FeasibleSpace space(map, parameters, present_m, refused);  // remembers from one to the next
     const FreeSpaceField field(map);
-    FeasibleSpace told(map, parameters, present_m, refused,
-                       [&](const VoxelIndex& voxel) { return field.free_distance(voxel); });
+    FeasibleSpace told(map, parameters, present_m, refused, &field);
     for (int i = 0; i < 80; ++i) {
       const Vector3d to_m(4.0 * random.uniform(), 4.0 * random.uniform(), 2.0 * random.uniform());
       const bool expected = plainly_reachable(map, parameters, present_m, to_m);

@@ -40,7 +40,7 @@ TEST(Fitness, SharesAreOfTheRaysThatMeetSomething) {
   counts.occlusion_plane = 30;
   counts.unseen = 30;
   counts.open = 100;
-  const Fitness f = fitness(counts, false);
+  const Fitness f = fitness(counts, {});
   EXPECT_DOUBLE_EQ(f.share_occupied, 0.4);
   EXPECT_DOUBLE_EQ(f.share_occlusion_plane, 0.3);
   EXPECT_DOUBLE_EQ(f.share_unseen, 0.3);
@@ -51,7 +51,7 @@ TEST(Fitness, SharesAreOfTheRaysThatMeetSomething) {
 TEST(Fitness, IsZeroWhereAllRaysAreOpen) {
   ViewCounts counts;
   counts.open = 1920;
-  const Fitness f = fitness(counts, true);
+  const Fitness f = fitness(counts, {1.0});
   EXPECT_EQ(f.value, 0.0);
   EXPECT_EQ(f.share_open, 1.0);
   EXPECT_EQ(f.share_occupied + f.share_occlusion_plane + f.share_unseen, 0.0);
@@ -65,10 +65,10 @@ TEST(Fitness, QualityIsTheShareThatImprovesTimesTheMeanImprovement) {
   counts.improved_voxels = 2;
   counts.improvement = kUnit * 6 / 10 + kUnit * 2 / 10;
   EXPECT_NEAR(quality_factor(counts), 0.2, 1e-12);
-  EXPECT_NEAR(fitness(counts, true).value, 0.5 * 1.2, 1e-12);
-  EXPECT_NEAR(fitness(counts, true).quality_factor, 0.2, 1e-12);
-  EXPECT_NEAR(fitness(counts, false).value, 0.5, 1e-12);
-  EXPECT_EQ(fitness(counts, false).quality_factor, 0.0);
+  EXPECT_NEAR(fitness(counts, {1.0}).value, 0.5 * 1.2, 1e-12);
+  EXPECT_NEAR(fitness(counts, {1.0}).factors[kQualityFactor], 0.2, 1e-12);
+  EXPECT_NEAR(fitness(counts, {}).value, 0.5, 1e-12);
+  EXPECT_EQ(fitness(counts, {}).factors[kQualityFactor], 0.0);
 }
 
 TEST(Fitness, QualityIsZeroWhereNothingImproves) {

@@ -95,25 +95,20 @@ TEST_F(PlannerOnTheBus, DecidesAfterRefusalsOnWhatItHasFoldedAndOnThemAlone) {
   EXPECT_EQ(stop_->stop_reason, "view_limit");
   EXPECT_EQ(stop_->views, 6);
 
-  MapBuilder builder(grid_of(config_), window_of(config_));
-  const auto predictor = make_predictor(config_);
+  const std::unique_ptr<ViewPlanner> planner = make_view_planner(config_);
   std::size_t decided_again = 1;  // the first goal is the start
   for (int view = 1; view <= 6; ++view) {
-    std::vector<SensorPose> refused;
     for (int attempt = 1; view > 1 && attempt <= commits_.at(view).attempt; ++attempt) {
-      const auto decision =
-          decide_next_view(builder.map(), *predictor, planner_parameters_of(config_),
-                           images_.at(view - 1).image.pose, config_.seed, view, attempt, refused);
-      ASSERT_TRUE(decision);
+      if (attempt > 1) planner->refuse();
+      ASSERT_TRUE(std::holds_alternative<Decision>(planner->next_view()));
+      const auto& decision = std::get<Decision>(planner->next_view());
       const goal_t& goal = goals_.at({view, attempt});
-      EXPECT_EQ(Eigen::Vector3d(goal.position_m), decision->pose.position_m)
+      EXPECT_EQ(Eigen::Vector3d(goal.position_m), decision.pose.position_m)
           << "view " << view << ", attempt " << attempt;
-      EXPECT_EQ(goal.pan_rad, decision->pose.pan_rad);
-      refused.push_back(decision->pose);
+      EXPECT_EQ(goal.pan_rad, decision.pose.pan_rad);
       ++decided_again;
     }
-    const FoldReport& report = builder.fold(images_.at(view).image);
-    predictor->map_changed(builder.map(), report.changed_slots, report.updated_surfaces);
+    planner->fold(images_.at(view).image);
   }
   EXPECT_EQ(commits_.at(5).attempt, 3);
   EXPECT_EQ(decided_again, goals_.size());

@@ -15,7 +15,6 @@ std::vector<ViewFacts> views(std::size_t count, double area_m2, double min_quali
 
 StopParameters window_of_three() {
   StopParameters parameters;
-  parameters.max_views = 10;
   parameters.stop_window_views = 3;
   parameters.stop_new_area_m2 = 0.1;
   return parameters;
@@ -53,11 +52,6 @@ TEST(Termination, Rule2AlsoNeedsEveryVoxelsQuality) {
   EXPECT_EQ(should_stop(views(5, 1.0, 0.80), parameters), std::nullopt);
 }
 
-TEST(Termination, EndsAtTheViewLimit) {
-  EXPECT_EQ(should_stop(views(10, 1.0), window_of_three()), StopReason::ViewLimit);
-  EXPECT_EQ(should_stop(views(10, 0.0), window_of_three()), StopReason::NothingNew);
-}
-
 TEST(Termination, FactsAreInSquareMetres) {
   EXPECT_NEAR(view_facts(10, 0.1, 0.5).newly_occupied_area_m2, 0.1, 1e-12);
   EXPECT_EQ(view_facts(10, 0.1, 0.5).min_quality, 0.5);
@@ -76,7 +70,6 @@ TEST(Termination, ParametersThatCannotBeAreNamed) {
   };
   using P = StopParameters;
   EXPECT_EQ(message([](P&) {}), "accepted");
-  EXPECT_EQ(message([](P& p) { p.max_views = 0; }), "max_views must be at least 1");
   EXPECT_EQ(message([](P& p) { p.quality_threshold = 1.1; }),
             "quality_threshold must lie between 0 and 1");
   EXPECT_EQ(message([](P& p) { p.stop_window_views = 0; }), "stop_window_views must be at least 1");

@@ -4,10 +4,8 @@
 #include <hwy/targets.h>
 
 #include <algorithm>
-#include <new>
 #include <numbers>
 #include <random>
-#include <thread>
 #include <vector>
 
 #include "sensor/sensor_pose.h"
@@ -70,6 +68,7 @@ std::int64_t compare(unsigned seed, int maps, int places, int threads) {
                           3 + static_cast<int>(random() % 30));
     const VoxelIndex min(-static_cast<int>(random() % 50), static_cast<int>(random() % 50), -5);
     const VoxelMap map = random_map(random, min, size);
+    const KnownSpace space(map, KnownSpace::Surfaces::Keep, threads);
     // An odd raster, so that bundles need padding, whose middle column and row are axis-parallel.
     const PredictionRaster raster =
         small_raster(15, 9, std::numbers::pi / 3.0, round % 3 == 0 ? 1.7 : 30.0);
@@ -86,8 +85,8 @@ std::int64_t compare(unsigned seed, int maps, int places, int threads) {
         const auto cell = choice == 0 ? 0 : choice == 1 ? extent - 1 : random() % extent;
         sensor[axis] = min[axis] + static_cast<int>(cell);
       }
-      plain.predict(map, sensor, expected);
-      fast.predict(map, sensor, counts);
+      plain.predict(space, sensor, expected);
+      fast.predict(space, sensor, counts);
       EXPECT_TRUE(std::equal(counts.begin(), counts.end(), expected.begin()))
           << "map " << round << " from " << sensor.transpose();
       rays += static_cast<std::int64_t>(raster.rays.pixels() * counts.size());
@@ -125,8 +124,8 @@ TEST(FastViewPredictor, AgreesWithFewerThreadsThanAskedFor) {
   EXPECT_GE(compare(4, 6, 4, 3), 100'000);
 }
 
-// A predictor that is told of everything that happens to a map whose window moves, against one that
-// has just seen it. Its rays, surfaces and all.
+// In a space that is told of everything that happens to a map whose window moves, the same as the
+// plain predictor reads from the map itself. Its rays, surfaces and all.
 TEST(FastViewPredictor, FollowsAWindowThatMoves) {
   std::mt19937 random(6);
   const auto below = [&random](int n) {
@@ -134,6 +133,7 @@ TEST(FastViewPredictor, FollowsAWindowThatMoves) {
   };
   const VoxelIndex size(40, 30, 20);
   VoxelMap map = random_map(random, VoxelIndex::Zero(), size);
+  KnownSpace space(map, KnownSpace::Surfaces::Keep);
   const PredictionRaster raster = small_raster(15, 9, std::numbers::pi / 3.0, 30.0);
   PlainViewPredictor plain(raster, kVoxelSize, directions(), true);
   FastViewPredictor fast(raster, kVoxelSize, directions(), true);
@@ -144,11 +144,11 @@ TEST(FastViewPredictor, FollowsAWindowThatMoves) {
     const int reach = round % 10 == 9 ? 50 : 4;
     const VoxelIndex step(below(2 * reach + 1) - reach, below(2 * reach + 1) - reach, below(3) - 1);
     map.move_window(map.window().min + step);
-    fast.map_changed(map, {}, {});
+    space.update({}, {});
     const VoxelIndex sensor =
         map.window().min + VoxelIndex(below(size[0]), below(size[1]), below(size[2]));
-    plain.predict(map, sensor, expected);
-    fast.predict(map, sensor, counts);
+    plain.predict(space, sensor, expected);
+    fast.predict(space, sensor, counts);
     ASSERT_TRUE(std::equal(counts.begin(), counts.end(), expected.begin())) << "round " << round;
 
     // What has been entered is filled, in part with surfaces that may lack a normal.
@@ -165,9 +165,9 @@ TEST(FastViewPredictor, FollowsAWindowThatMoves) {
       surface.quality = static_cast<std::uint16_t>(below(65536));
       surfaces.push_back(slot);
     });
-    fast.map_changed(map, slots, surfaces);
-    plain.predict(map, sensor, expected);
-    fast.predict(map, sensor, counts);
+    space.update(slots, surfaces);
+    plain.predict(space, sensor, expected);
+    fast.predict(space, sensor, counts);
     ASSERT_TRUE(std::equal(counts.begin(), counts.end(), expected.begin())) << "round " << round;
     for (const ViewCounts& view : counts) improved += view.improved_voxels;
   }
@@ -177,6 +177,7 @@ TEST(FastViewPredictor, FollowsAWindowThatMoves) {
 TEST(FastViewPredictor, PredictsFromSeveralSensorsAsFromOneAfterTheOther) {
   std::mt19937 random(5);
   const VoxelMap map = random_map(random, VoxelIndex::Zero(), {30, 25, 20});
+  const KnownSpace space(map, KnownSpace::Surfaces::Keep);
   const PredictionRaster raster = small_raster(15, 9, std::numbers::pi / 3.0, 30.0);
   const std::vector<VoxelIndex> sensors = {{15, 12, 10}, {0, 0, 0}, {29, 3, 19}, {15, 12, 11}};
   const std::size_t views = directions().size();
@@ -184,16 +185,10 @@ TEST(FastViewPredictor, PredictsFromSeveralSensorsAsFromOneAfterTheOther) {
     for (const int threads : {1, 2, 3}) {
       FastViewPredictor fast(raster, kVoxelSize, directions(), quality, threads);
       std::vector<ViewCounts> counts(sensors.size() * views);
-      int done_meanwhile = 0;
-      const auto caller = std::this_thread::get_id();
-      fast.predict_all(map, sensors, counts, [&] {
-        EXPECT_EQ(std::this_thread::get_id(), caller);
-        ++done_meanwhile;
-      });
-      EXPECT_EQ(done_meanwhile, 1);
+      fast.predict_all(space, sensors, counts);
       for (std::size_t i = 0; i < sensors.size(); ++i) {
         std::vector<ViewCounts> alone(views);
-        fast.predict(map, sensors[i], alone);
+        fast.predict(space, sensors[i], alone);
         EXPECT_TRUE(std::equal(alone.begin(), alone.end(), &counts[i * views]))
             << "sensor " << i << ", " << threads << " threads";
       }
@@ -201,39 +196,23 @@ TEST(FastViewPredictor, PredictsFromSeveralSensorsAsFromOneAfterTheOther) {
   }
 }
 
-TEST(FastViewPredictor, LetsOutWhatIsThrownMeanwhileAndGoesOnWorking) {
-  std::mt19937 random(6);
-  const VoxelMap map = random_map(random, VoxelIndex::Zero(), {30, 25, 20});
-  const PredictionRaster raster = small_raster(15, 9, std::numbers::pi / 3.0, 30.0);
-  const VoxelIndex sensor(15, 12, 10);
-  for (const int threads : {1, 2}) {
-    FastViewPredictor fast(raster, kVoxelSize, directions(), true, threads);
-    std::vector<ViewCounts> expected(directions().size());
-    fast.predict(map, sensor, expected);
-    std::vector<ViewCounts> counts(directions().size());
-    EXPECT_THROW(fast.predict_all(map, {&sensor, 1}, counts, [] { throw std::bad_alloc(); }),
-                 std::bad_alloc);
-    fast.predict(map, sensor, counts);
-    EXPECT_EQ(counts, expected);
-  }
-}
-
 TEST(FastViewPredictor, WantsRoomForEveryViewOfEverySensor) {
   std::mt19937 random(7);
   const VoxelMap map = random_map(random, VoxelIndex::Zero(), {30, 25, 20});
+  const KnownSpace space(map, KnownSpace::Surfaces::Keep);
   const PredictionRaster raster = small_raster(15, 9, std::numbers::pi / 3.0, 30.0);
   FastViewPredictor fast(raster, kVoxelSize, directions(), false, 1);
   const std::vector<VoxelIndex> sensors = {{15, 12, 10}, {3, 4, 5}};
   std::vector<ViewCounts> counts(2 * directions().size());
-  EXPECT_NO_THROW(fast.predict_all(map, sensors, counts));
-  EXPECT_NO_THROW(fast.predict_all(map, {}, {}));
+  EXPECT_NO_THROW(fast.predict_all(space, sensors, counts));
+  EXPECT_NO_THROW(fast.predict_all(space, {}, {}));
   counts.pop_back();
-  EXPECT_THROW(fast.predict_all(map, sensors, counts), std::invalid_argument);
+  EXPECT_THROW(fast.predict_all(space, sensors, counts), std::invalid_argument);
   counts.resize(directions().size());
-  EXPECT_THROW(fast.predict_all(map, sensors, counts), std::invalid_argument);
+  EXPECT_THROW(fast.predict_all(space, sensors, counts), std::invalid_argument);
   const std::vector<VoxelIndex> outside = {{15, 12, 10}, {30, 4, 5}};
   counts.resize(2 * directions().size());
-  EXPECT_THROW(fast.predict_all(map, outside, counts), std::invalid_argument);
+  EXPECT_THROW(fast.predict_all(space, outside, counts), std::invalid_argument);
 }
 
 TEST(FastViewPredictor, FollowsChangesOfTheMap) {
@@ -243,6 +222,7 @@ TEST(FastViewPredictor, FollowsChangesOfTheMap) {
   VoxelMap map = random_map(random, VoxelIndex::Zero(), size);
   PlainViewPredictor plain(raster, kVoxelSize, icosahedron_orientations(), true);
   FastViewPredictor fast(raster, kVoxelSize, icosahedron_orientations(), true);
+  KnownSpace space(map, KnownSpace::Surfaces::Keep);
   std::vector<ViewCounts> expected(20);
   std::vector<ViewCounts> counts(20);
   for (int round = 0; round < 40; ++round) {
@@ -262,9 +242,9 @@ TEST(FastViewPredictor, FollowsChangesOfTheMap) {
         updated.push_back(slot);
       }
     }
-    fast.map_changed(map, changed, updated);
-    plain.predict(map, VoxelIndex(20, 15, 10), expected);
-    fast.predict(map, VoxelIndex(20, 15, 10), counts);
+    space.update(changed, updated);
+    plain.predict(space, VoxelIndex(20, 15, 10), expected);
+    fast.predict(space, VoxelIndex(20, 15, 10), counts);
     ASSERT_EQ(counts, expected) << "round " << round;
   }
 }
@@ -276,7 +256,7 @@ TEST(FastViewPredictor, KnowsOccupiedVoxelsWithoutSurfaceData) {
   const PredictionRaster raster = small_raster(16, 8, std::numbers::pi / 3.0, 30.0);
   PlainViewPredictor plain(raster, kVoxelSize, icosahedron_orientations(), true);
   FastViewPredictor fast(raster, kVoxelSize, icosahedron_orientations(), true);
-  fast.map_changed(map, {}, {});
+  KnownSpace space(map, KnownSpace::Surfaces::Keep);
   std::vector<std::uint32_t> changed;
   for (int i = 0; i < 12; ++i) {
     for (int k = 0; k < 12; ++k) {
@@ -284,11 +264,11 @@ TEST(FastViewPredictor, KnowsOccupiedVoxelsWithoutSurfaceData) {
       changed.push_back(static_cast<std::uint32_t>(map.slot({i, 11, k})));
     }
   }
-  fast.map_changed(map, changed, {});
+  space.update(changed, {});
   std::vector<ViewCounts> expected(20);
   std::vector<ViewCounts> counts(20);
-  plain.predict(map, VoxelIndex(6, 3, 6), expected);
-  fast.predict(map, VoxelIndex(6, 3, 6), counts);
+  plain.predict(space, VoxelIndex(6, 3, 6), expected);
+  fast.predict(space, VoxelIndex(6, 3, 6), counts);
   EXPECT_EQ(counts, expected);
   EXPECT_TRUE(std::any_of(counts.begin(), counts.end(),
                           [](const ViewCounts& view) { return view.occupied_voxels > 20; }));
@@ -302,10 +282,14 @@ TEST(FastViewPredictor, SaysWhatItCannotDo) {
                std::invalid_argument);
   FastViewPredictor fast(raster, kVoxelSize, directions(), false);
   VoxelMap map({kVoxelSize, Eigen::Vector3d::Zero()}, {VoxelIndex::Zero(), VoxelIndex(8, 8, 8)});
+  const KnownSpace space(map);
   std::vector<ViewCounts> counts(directions().size());
-  EXPECT_THROW(fast.predict(map, VoxelIndex(8, 0, 0), counts), std::invalid_argument);
+  EXPECT_THROW(fast.predict(space, VoxelIndex(8, 0, 0), counts), std::invalid_argument);
   counts.pop_back();
-  EXPECT_THROW(fast.predict(map, VoxelIndex(1, 1, 1), counts), std::invalid_argument);
+  EXPECT_THROW(fast.predict(space, VoxelIndex(1, 1, 1), counts), std::invalid_argument);
+  FastViewPredictor with_quality(raster, kVoxelSize, directions(), true);
+  counts.resize(directions().size());
+  EXPECT_THROW(with_quality.predict(space, VoxelIndex(1, 1, 1), counts), std::logic_error);
 }
 
 }  // namespace

@@ -53,6 +53,7 @@ TEST(PanoramaViewPredictor, FitnessIsThePlainOneWithinTheSamplingError) {
   int views = 0;
   for (int round = 0; round < 30; ++round) {
     const VoxelMap map = room(random);
+    const KnownSpace space(map);
     PlainViewPredictor plain(paper_raster(), kVoxelSize, icosahedron_orientations(1), false);
     PanoramaViewPredictor panorama(paper_raster(), kVoxelSize, icosahedron_orientations(1));
     PanoramaViewPredictor by_two(paper_raster(), kVoxelSize, icosahedron_orientations(1), 2);
@@ -62,15 +63,14 @@ TEST(PanoramaViewPredictor, FitnessIsThePlainOneWithinTheSamplingError) {
     const VoxelIndex sensor(6 + static_cast<int>(random() % 40),
                             6 + static_cast<int>(random() % 32),
                             6 + static_cast<int>(random() % 20));
-    plain.predict(map, sensor, expected);
-    panorama.predict(map, sensor, counts);
-    by_two.predict(map, sensor, counts_by_two);
+    plain.predict(space, sensor, expected);
+    panorama.predict(space, sensor, counts);
+    by_two.predict(space, sensor, counts_by_two);
     EXPECT_TRUE(std::equal(counts.begin(), counts.end(), counts_by_two.begin()));
     for (std::size_t i = 0; i < counts.size(); ++i) {
       EXPECT_EQ(counts[i].occupied + counts[i].occlusion_plane + counts[i].unseen + counts[i].open,
                 64 * 30);
-      const double error =
-          std::abs(fitness(counts[i], false).value - fitness(expected[i], false).value);
+      const double error = std::abs(fitness(counts[i], {}).value - fitness(expected[i], {}).value);
       sum += error;
       largest = std::max(largest, error);
       ++views;
@@ -86,6 +86,7 @@ TEST(PanoramaViewPredictor, ManyDirectionsContainTheFew) {
   // The same orientation has the same counts, whatever others are asked for with it.
   std::mt19937 random(6);
   const VoxelMap map = room(random);
+  const KnownSpace space(map);
   const std::vector<Orientation> few = icosahedron_orientations();
   std::vector<Orientation> many = icosahedron_orientations(3);
   many.insert(many.end(), few.begin(), few.end());
@@ -93,8 +94,8 @@ TEST(PanoramaViewPredictor, ManyDirectionsContainTheFew) {
   PanoramaViewPredictor predict_many(paper_raster(), kVoxelSize, many);
   std::vector<ViewCounts> counts_few(few.size());
   std::vector<ViewCounts> counts_many(many.size());
-  predict_few.predict(map, VoxelIndex(20, 20, 15), counts_few);
-  predict_many.predict(map, VoxelIndex(20, 20, 15), counts_many);
+  predict_few.predict(space, VoxelIndex(20, 20, 15), counts_few);
+  predict_many.predict(space, VoxelIndex(20, 20, 15), counts_many);
   EXPECT_TRUE(std::equal(counts_few.begin(), counts_few.end(), counts_many.end() - 20));
 }
 
@@ -104,31 +105,15 @@ TEST(PanoramaViewPredictor, RaysEndAtTheSensorsRange) {
   for (int k = 0; k < 60; ++k) {
     for (int j = 0; j < 60; ++j) map.set_label({59, j, k}, Label::Occupied);
   }
+  const KnownSpace space(map);
   std::vector<ViewCounts> counts(20);
   PanoramaViewPredictor near(paper_raster(2.0), kVoxelSize, icosahedron_orientations());
-  near.predict(map, VoxelIndex(30, 30, 30), counts);
+  near.predict(space, VoxelIndex(30, 30, 30), counts);
   for (const ViewCounts& view : counts) EXPECT_EQ(view.open, 64 * 30);
   PanoramaViewPredictor far(paper_raster(30.0), kVoxelSize, icosahedron_orientations());
-  far.predict(map, VoxelIndex(30, 30, 30), counts);
+  far.predict(space, VoxelIndex(30, 30, 30), counts);
   EXPECT_TRUE(std::any_of(counts.begin(), counts.end(),
                           [](const ViewCounts& view) { return view.occupied > 1000; }));
-}
-
-TEST(PanoramaViewPredictor, FollowsChangesOfTheMap) {
-  std::mt19937 random(8);
-  VoxelMap map = room(random);
-  PanoramaViewPredictor followed(paper_raster(), kVoxelSize, icosahedron_orientations());
-  std::vector<ViewCounts> counts(20);
-  followed.predict(map, VoxelIndex(20, 20, 15), counts);
-  const VoxelIndex changed(22, 20, 15);
-  map.set_label(changed, map.label(changed) == Label::Occupied ? Label::Empty : Label::Occupied);
-  const std::vector<std::uint32_t> slots = {static_cast<std::uint32_t>(map.slot(changed))};
-  followed.map_changed(map, slots, {});
-  followed.predict(map, VoxelIndex(20, 20, 15), counts);
-  PanoramaViewPredictor fresh(paper_raster(), kVoxelSize, icosahedron_orientations());
-  std::vector<ViewCounts> expected(20);
-  fresh.predict(map, VoxelIndex(20, 20, 15), expected);
-  EXPECT_EQ(counts, expected);
 }
 
 }  // namespace

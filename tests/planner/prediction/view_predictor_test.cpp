@@ -43,7 +43,7 @@ class SmallWorld : public ::testing::Test {
                                   bool quality = false) {
     PlainViewPredictor predictor({three_rays(), range_max_m}, 1.0, orientations, quality);
     std::vector<ViewCounts> counts(orientations.size());
-    predictor.predict(map, sensor, counts);
+    predictor.predict(KnownSpace(map), sensor, counts);
     return counts;
   }
 
@@ -58,7 +58,7 @@ TEST_F(SmallWorld, CountsWhatEachRayMeetsFirst) {
   map.set_label({3, 1, 2}, Label::Unmarked);
   const ViewCounts counts = predict(30.0, looking({0.0}))[0];
   EXPECT_EQ(counts, (ViewCounts{1, 1, 1, 0, 0, 0, 0}));
-  const Fitness f = fitness(counts, false);
+  const Fitness f = fitness(counts, {});
   EXPECT_NEAR(f.share_occupied, 1.0 / 3.0, 1e-12);
   EXPECT_NEAR(f.value, 5.0 / 27.0 - 10.5 / 9.0 + 2.0, 1e-12);
 }
@@ -112,17 +112,18 @@ TEST_F(SmallWorld, AVoxelMetByManyRaysCountsOnceWithItsBestRay) {
   const RayTable narrow{{0.1, 0.0, -0.1}, {std::sqrt(0.99), 1.0, std::sqrt(0.99)}, {0.0}, {1.0}};
   PlainViewPredictor predictor({narrow, 2.0}, 1.0, looking({0.0}), true);
   ViewCounts counts;
-  predictor.predict(map, sensor, {&counts, 1});
+  predictor.predict(KnownSpace(map), sensor, {&counts, 1});
   EXPECT_EQ(counts, (ViewCounts{3, 0, 0, 0, 1, 1, 65535 - 60000}));
 }
 
 TEST_F(SmallWorld, RefusesWhatItWasNotMadeFor) {
   PlainViewPredictor predictor({three_rays(), 2.0}, 1.0, looking({0.0, 1.0}), false);
   std::vector<ViewCounts> counts(2);
-  EXPECT_THROW(predictor.predict(map, {2, 5, 2}, counts), std::invalid_argument);
-  EXPECT_THROW(predictor.predict(map, sensor, {counts.data(), 1}), std::invalid_argument);
+  EXPECT_THROW(predictor.predict(KnownSpace(map), {2, 5, 2}, counts), std::invalid_argument);
+  EXPECT_THROW(predictor.predict(KnownSpace(map), sensor, {counts.data(), 1}),
+               std::invalid_argument);
   const VoxelMap finer({0.5, Eigen::Vector3d::Zero()}, map.window());
-  EXPECT_THROW(predictor.predict(finer, sensor, counts), std::invalid_argument);
+  EXPECT_THROW(predictor.predict(KnownSpace(finer), sensor, counts), std::invalid_argument);
   EXPECT_THROW(PlainViewPredictor({three_rays(), 2.0}, 1.0, {}, false), std::invalid_argument);
   EXPECT_THROW(PlainViewPredictor({three_rays(), 0.0}, 1.0, looking({0.0}), false),
                std::invalid_argument);

@@ -1,4 +1,4 @@
-#include "planner/next_view.h"
+#include "planner/paper_strategy.h"
 
 #include <gtest/gtest.h>
 
@@ -27,9 +27,13 @@ class Hall : public ::testing::Test {
     }
   }
 
+  std::optional<Decision> try_to_decide(std::int64_t seed, int attempt = 1) {
+    const KnownSpace space(map);
+    return decide_by_simplex({space, present, seed, 2, attempt, refused}, predictor, parameters);
+  }
+
   Decision decide(std::int64_t seed, int attempt = 1) {
-    const auto decision =
-        decide_next_view(map, predictor, parameters, present, seed, 2, attempt, refused);
+    const auto decision = try_to_decide(seed, attempt);
     EXPECT_TRUE(decision.has_value());
     return decision.value_or(Decision{});
   }
@@ -77,10 +81,10 @@ TEST_F(Hall, TheViewIsTheBestOfAllTried) {
 TEST_F(Hall, TheFitnessIsWhatThePredictorSaysOfTheView) {
   const Decision decision = decide(3);
   std::vector<ViewCounts> counts(20);
-  predictor.predict(map, map.grid().voxel_of(decision.pose.position_m), counts);
+  predictor.predict(KnownSpace(map), map.grid().voxel_of(decision.pose.position_m), counts);
   double best = 0.0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    best = std::max(best, fitness(counts[i], false).value);
+    best = std::max(best, fitness(counts[i], {}).value);
   }
   EXPECT_EQ(decision.fitness.value, best);
   // Only a view that has the unseen wall in sight is better than one of nothing new.
@@ -138,15 +142,15 @@ TEST_F(Hall, NothingFeasibleIsNoDecision) {
   refused.push_back(present);
   parameters.feasibility.workspace_max_m = {0.9, 0.9, 0.8};
   parameters.feasibility.workspace_min_m = {0.85, 0.85, 0.75};
-  EXPECT_EQ(decide_next_view(map, predictor, parameters, present, 1, 2, 1, refused), std::nullopt);
+  EXPECT_FALSE(try_to_decide(1).has_value());
 }
 
 TEST_F(Hall, ParametersThatCannotBeAreNamed) {
   const auto message = [&](auto change) {
-    PlannerParameters changed;
-    change(changed);
+    parameters = {};
+    change(parameters);
     try {
-      decide_next_view(map, predictor, changed, present, 1, 2, 1, {});
+      try_to_decide(1);
     } catch (const std::invalid_argument& error) {
       return std::string(error.what());
     }

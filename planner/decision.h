@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "planner/fitness.h"
+#include "planner/simplex.h"
+#include "planner/termination.h"
+#include "sensor/sensor_pose.h"
+
+namespace nextview {
+
+/// A position that was tried on the way to a decision (paper figure 6).
+struct TriedPosition {
+  Eigen::Vector3d position_m = Eigen::Vector3d::Zero();
+  double pan_rad = 0.0;  ///< best direction there; 0 when not feasible
+  double tilt_rad = 0.0;
+  double fitness = 0.0;  ///< best fitness there; -1 when not feasible
+  SimplexMove move = SimplexMove::FirstVertex;
+};
+
+/// The next best view: where to go and why.
+struct Decision {
+  SensorPose pose;
+  std::vector<Eigen::Vector3d> waypoints_m;  ///< present position first, pose.position_m last
+  Fitness fitness;                           ///< predicted, at the pose
+  int iterations = 0;                        ///< of the search
+  int evaluations = 0;                       ///< positions tried, = tried.size()
+  std::vector<TriedPosition> tried;
+};
+
+/// There is no next view, and why.
+struct Ending {
+  StopReason reason;
+  std::string detail;  ///< one sentence for people
+};
+
+using NextView = std::variant<Decision, Ending>;
+
+}  // namespace nextview

@@ -1,0 +1,154 @@
+#include "planner/paper_strategy.h"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "planner/prediction/orientations.h"
+#include "planner/view_evaluator.h"
+#include "sensor/random_stream.h"
+
+namespace nextview {
+
+namespace {
+
+constexpr double kInfeasible = -std::numeric_limits<double>::infinity();
+
+/// An infeasible vertex of the initial simplex is drawn again up to this many times. After the
+/// first scan only a narrow cone of space is known, about a twentieth of all directions; a draw
+/// costs little beside a prediction.
+constexpr int kInitialDraws = 200;
+
+/// The present position, and three positions each along a random ray inside a random face (P21).
+std::array<Eigen::Vector3d, 4> initial_vertices(const Eigen::Vector3d& present_m,
+                                                const PlannerParameters& parameters,
+                                                FeasibleSpace& space, RandomStream& random) {
+  const std::vector<SphereTriangle> faces = icosahedron_faces();
+  std::array<Eigen::Vector3d, 4> vertices;
+  vertices[0] = present_m;
+  for (std::size_t i = 1; i < vertices.size(); ++i) {
+    for (int draw = 0; draw < kInitialDraws; ++draw) {
+      const SphereTriangle& face = faces[random.below(static_cast<std::uint32_t>(faces.size()))];
+      const Eigen::Vector3d direction = random_direction_in(face, random);
+      const double distance_m = parameters.step_min_m +
+                                random.uniform() * (parameters.step_max_m - parameters.step_min_m);
+      vertices[i] = present_m + distance_m * direction;
+      if (space.reachable(vertices[i])) break;
+    }
+  }
+  return vertices;
+}
+
+/// Where the search has led, which has found a feasible position.
+Decision decision_of(const SimplexResult& search, const ViewEvaluator& evaluator,
+                     const SensorPose& present) {
+  const std::vector<Orientation>& orientations = evaluator.orientations();
+  Decision decision;
+  const BestView& chosen = evaluator.at(search.best.position);
+  const Orientation& orientation = orientations[chosen.orientation];
+  decision.pose = {search.best.position, orientation.pan_rad, orientation.tilt_rad};
+  decision.waypoints_m = {present.position_m, search.best.position};
+  decision.fitness = chosen.fitness;
+  decision.iterations = search.iterations;
+  decision.evaluations = static_cast<int>(search.tried.size());
+  for (const SimplexTrial& trial : search.tried) {
+    TriedPosition tried{trial.position, 0.0, 0.0, -1.0, trial.move};
+    if (trial.value != kInfeasible) {
+      const BestView& best = evaluator.at(trial.position);
+      tried.pan_rad = orientations[best.orientation].pan_rad;
+      tried.tilt_rad = orientations[best.orientation].tilt_rad;
+      tried.fitness = best.fitness.value;
+    }
+    decision.tried.push_back(tried);
+  }
+  return decision;
+}
+
+}  // namespace
+
+void PlannerParameters::check() const {
+  if (!(step_min_m > 0.0) || !std::isfinite(step_min_m)) {
+    throw std::invalid_argument("step_min_m must be a positive length");
+  }
+  if (!(step_max_m >= step_min_m) || !std::isfinite(step_max_m)) {
+    throw std::invalid_argument("step_max_m must be at least step_min_m");
+  }
+  if (!(fitness_tolerance >= 0.0) || !std::isfinite(fitness_tolerance)) {
+    throw std::invalid_argument("fitness_tolerance must be 0 or more");
+  }
+  if (max_evaluations < 4) throw std::invalid_argument("max_evaluations must be at least 4");
+  feasibility.check();
+}
+
+std::optional<Decision> decide_by_simplex(const Situation& situation, ViewPredictor& predictor,
+                                          const PlannerParameters& parameters) {
+  parameters.check();
+  if (parameters.use_quality && !predictor.counts_quality()) {
+    throw std::invalid_argument("the view predictor does not count quality, but use_quality is on");
+  }
+  const SensorPose& present = situation.present;
+  FeasibleSpace feasible(situation.space.map(), parameters.feasibility, present.position_m,
+                         situation.refused, &situation.space.field());
+  FactorWeights weights = {};
+  if (parameters.use_quality) weights[kQualityFactor] = 1.0;
+  ViewEvaluator evaluator(situation.space, predictor, weights, present);
+  const auto values = [&](std::span<const Eigen::Vector3d> positions_m) {
+    std::vector<Eigen::Vector3d> reachable_m;
+    std::vector<double> result(positions_m.size(), kInfeasible);
+    for (std::size_t i = 0; i < positions_m.size(); ++i) {
+      if (!feasible.reachable(positions_m[i])) continue;
+      reachable_m.push_back(positions_m[i]);
+      result[i] = 0.0;
+    }
+    evaluator.evaluate(reachable_m);
+    for (std::size_t i = 0; i < positions_m.size(); ++i) {
+      if (result[i] == kInfeasible) continue;
+      const BestView& best = evaluator.at(positions_m[i]);
+      result[i] = best.any ? best.fitness.value : kInfeasible;
+    }
+    return result;
+  };
+
+  RandomStream random(situation.seed, situation.view, situation.attempt,
+                      RandomPurpose::InitialSimplex);
+  const SimplexResult search =
+      maximise_by_simplex(initial_vertices(present.position_m, parameters, feasible, random),
+                          values, parameters.fitness_tolerance, parameters.max_evaluations);
+  if (search.best.value == kInfeasible) return std::nullopt;
+  return decision_of(search, evaluator, present);
+}
+
+PaperStrategy::PaperStrategy(const PlannerParameters& search, const StopParameters& stop,
+                             double voxel_size_m, std::unique_ptr<ViewPredictor> predictor)
+    : search_(search), stop_(stop), voxel_size_m_(voxel_size_m), predictor_(std::move(predictor)) {
+  search_.check();
+  stop_.check();
+}
+
+KnownSpace::Surfaces PaperStrategy::surfaces() const {
+  return predictor_->counts_quality() ? KnownSpace::Surfaces::Keep : KnownSpace::Surfaces::Leave;
+}
+
+void PaperStrategy::view_folded(const FoldedView& folded) {
+  views_.push_back(
+      view_facts(folded.report.newly_occupied, voxel_size_m_, folded.statistics.min_quality));
+}
+
+std::optional<Ending> PaperStrategy::ending() const {
+  const std::optional<StopReason> reason = should_stop(views_, stop_);
+  if (!reason) return std::nullopt;
+  return Ending{*reason, std::string(describe(*reason))};
+}
+
+NextView PaperStrategy::next_view(const Situation& situation) {
+  std::optional<Decision> decision = decide_by_simplex(situation, *predictor_, search_);
+  if (decision) return *std::move(decision);
+  return Ending{StopReason::NoFeasibleGoal, "view " + std::to_string(situation.view) +
+                                                ": no position is feasible from the last one"};
+}
+
+}  // namespace nextview

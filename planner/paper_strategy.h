@@ -1,0 +1,59 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "planner/feasibility.h"
+#include "planner/prediction/view_predictor.h"
+#include "planner/strategy.h"
+#include "planner/termination.h"
+
+namespace nextview {
+
+/// How the next best view is looked for (P19-P22).
+struct PlannerParameters {
+  bool use_quality = false;  ///< f_quality in the fitness (eq. 4)
+  double step_min_m = 0.3;   ///< distance of the initial simplex's vertices from the first ...
+  double step_max_m = 3.0;   ///< ... is drawn from this range
+  double fitness_tolerance = 0.01;  ///< the simplex stops when its fitness range falls below
+  int max_evaluations = 70;         ///< or after this many positions
+  FeasibilityParameters feasibility;
+
+  /// @throws std::invalid_argument naming the parameter that cannot be
+  void check() const;
+};
+
+/// Decides the next best view by hill climbing over positions with a simplex (P21), at each
+/// position exhaustively over the predictor's orientations (P20), as far as the known map lets the
+/// robot go (P19).
+/// @return nothing when no position is feasible; the refused goals and what lies near or behind
+/// them
+///         are left out
+/// @throws std::invalid_argument for parameters that cannot be, a present position outside the
+///         map's window, or a predictor that does not count the quality that is asked for
+std::optional<Decision> decide_by_simplex(const Situation& situation, ViewPredictor& predictor,
+                                          const PlannerParameters& parameters);
+
+/// The paper's method, section 5: the simplex, and the rules that end a run (P23).
+class PaperStrategy : public Strategy {
+ public:
+  /// @param voxel_size_m of the map, for areas
+  /// @throws std::invalid_argument for parameters that cannot be
+  PaperStrategy(const PlannerParameters& search, const StopParameters& stop, double voxel_size_m,
+                std::unique_ptr<ViewPredictor> predictor);
+
+  KnownSpace::Surfaces surfaces() const override;
+  void view_folded(const FoldedView& folded) override;
+  std::optional<Ending> ending() const override;
+  NextView next_view(const Situation& situation) override;
+
+ private:
+  PlannerParameters search_;
+  StopParameters stop_;
+  double voxel_size_m_;
+  std::unique_ptr<ViewPredictor> predictor_;
+  std::vector<ViewFacts> views_;  // folded
+};
+
+}  // namespace nextview

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "planner/fitness.h"
+#include "planner/prediction/known_space.h"
+#include "planner/prediction/view_predictor.h"
+#include "sensor/sensor_pose.h"
+
+namespace nextview {
+
+/// The best orientation at a position.
+struct BestView {
+  std::size_t orientation = 0;  ///< of the predictor's
+  Fitness fitness;
+  bool any = false;  ///< false: there is none to choose from
+};
+
+/// Evaluates poses in one state of the map: what their rays would meet -> counts -> factors ->
+/// fitness (P15-P17), at every position exhaustively over the predictor's orientations (P20). A
+/// position's fitness is that of its voxel, best over the orientations, ties to the lowest index; a
+/// voxel is evaluated once.
+///
+/// In the voxel the sensor stands in, the orientation it has just scanned with is left out: the
+/// same scan again would add nothing, whatever its fitness.
+class ViewEvaluator {
+ public:
+  /// Space and predictor must outlive this object and not change.
+  ViewEvaluator(const KnownSpace& space, ViewPredictor& predictor, const FactorWeights& weights,
+                const SensorPose& present);
+
+  /// Evaluates positions inside the map's window, as far as they are not yet, all together.
+  void evaluate(std::span<const Eigen::Vector3d> positions_m);
+
+  /// At a position that has been evaluated.
+  const BestView& at(const Eigen::Vector3d& position_m) const;
+
+  const std::vector<Orientation>& orientations() const { return predictor_.orientations(); }
+
+ private:
+  BestView best_view(const VoxelIndex& voxel, std::span<const ViewCounts> counts) const;
+  bool just_scanned(const Orientation& orientation) const;
+
+  const KnownSpace& space_;
+  ViewPredictor& predictor_;
+  FactorWeights weights_;
+  VoxelIndex present_;
+  Eigen::Vector3d present_direction_;
+  std::vector<VoxelIndex> unknown_;  // and their counts, of one call
+  std::vector<ViewCounts> counts_;
+  std::unordered_map<std::size_t, BestView> known_;  // by slot
+};
+
+}  // namespace nextview
