@@ -54,26 +54,6 @@ std::optional<StopReason> stop_reason_from_string(std::string_view name) {
   return std::nullopt;
 }
 
-int exit_status(StopReason reason) {
-  switch (reason) {
-    case StopReason::NothingNew:
-    case StopReason::QualityReached:
-    case StopReason::ViewLimit:
-      return 0;
-    case StopReason::NoFeasibleGoal:
-      return 3;
-    case StopReason::DigestMismatch:
-      return 4;
-    case StopReason::NoAnswer:
-      return 5;
-    case StopReason::ProcessDied:
-      return 6;
-    case StopReason::Interrupted:
-      return 130;
-  }
-  throw std::invalid_argument("not a stop reason");
-}
-
 std::string_view describe(StopReason reason) {
   switch (reason) {
     case StopReason::NothingNew:

@@ -8,7 +8,7 @@
 
 namespace nextview {
 
-/// Why a run ended. README lists the names and exit statuses; the first three are a success.
+/// Why a run ended. README lists the names; the first three are a success.
 enum class StopReason {
   NothingNew,      ///< P23 rule 1: no more unseen area is covered
   QualityReached,  ///< P23 rule 2: the same, and every voxel's quality is above the threshold
@@ -26,8 +26,6 @@ std::span<const StopReason> all_stop_reasons();
 std::string_view to_string(StopReason reason);
 /// The reason of that name, or nothing when there is none.
 std::optional<StopReason> stop_reason_from_string(std::string_view name);
-/// What ./run returns: 0 for a success, otherwise different for each reason.
-int exit_status(StopReason reason);
 /// One sentence for people.
 std::string_view describe(StopReason reason);
 

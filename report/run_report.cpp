@@ -135,7 +135,7 @@ void write_summary(std::ostream& out, const FinishedRun& run) {
   json["scene"] = run.config.scene_name;
   json["seed"] = run.config.seed;
   json["views"] = run.rows.size();
-  json["stop_reason"] = to_string(run.stop_reason);
+  json["stop_reason"] = run.stop_reason;
   json["stop_detail"] = run.stop_detail;
   json["surface_coverage"] =
       last && last->surface_coverage ? Json(*last->surface_coverage) : Json(nullptr);
@@ -188,7 +188,7 @@ void write_table(std::ostream& out, const FinishedRun& run) {
     out << format("  %-22s", name) << value << '\n';
   };
   out << run.config.scene_name << ", seed " << run.config.seed << ": " << run.rows.size()
-      << " views, " << to_string(run.stop_reason) << ". " << run.stop_detail << '\n';
+      << " views, " << run.stop_reason << ". " << run.stop_detail << '\n';
   if (run.rows.empty()) return;
   const ViewRow& last = run.rows.back();
   if (last.surface_coverage) {

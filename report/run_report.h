@@ -8,7 +8,6 @@
 #include <string>
 
 #include "logger/run_log.h"
-#include "planner/termination.h"
 #include "report/view_rows.h"
 #include "scoring/visible_surface.h"
 
@@ -17,7 +16,7 @@ namespace nextview {
 /// A run when it is over, as it is written down.
 struct FinishedRun {
   run_config_t config{};
-  StopReason stop_reason = StopReason::ViewLimit;
+  std::string stop_reason;  ///< as the log names it
   std::string stop_detail;
   std::vector<ViewRow> rows;
   int collisions = 0;  ///< goals the base refused

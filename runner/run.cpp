@@ -291,11 +291,17 @@ FinishedRun Run::finish(Clock::time_point program_start) {
   if (log_) run.log = log_->counters();
   for (const auto& [key, arrival] : record_.arrivals()) run.collisions += arrival.arrived ? 0 : 1;
   if (ended_early_) {
-    run.stop_reason = ended_early_->reason;
+    run.stop_reason = to_string(ended_early_->reason);
     run.stop_detail = ended_early_->detail;
-  } else if (const auto reason = stop_reason_from_string(record_.stop()->stop_reason)) {
-    run.stop_reason = *reason;
+  } else {
+    run.stop_reason = record_.stop()->stop_reason;
     run.stop_detail = record_.stop()->detail;
+    if (!stop_reason_from_string(run.stop_reason)) {
+      run.stop_detail = "The run was ended for the reason \"" + run.stop_reason +
+                        "\", which this version of nextview_run does not know: start it with the "
+                        "planner it was built with. " +
+                        run.stop_detail;
+    }
   }
   if (first_goal_) run.start_up_s = seconds_between(program_start, *first_goal_);
   if (first_goal_ && last_commit_) {

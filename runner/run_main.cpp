@@ -7,6 +7,7 @@
 #include <fstream>
 #include <iostream>
 
+#include "runner/exit_status.h"
 #include "runner/run.h"
 #include "runner/run_signals.h"
 
@@ -84,7 +85,7 @@ int run(const nextview::RunOptions& options, nextview::Run::Clock::time_point st
   if (nextview::noted_signal() != 0) return 128 + nextview::noted_signal();
   const int status = nextview::exit_status(finished.stop_reason);
   if (status != 0) {
-    std::cerr << "nextview_run: " << nextview::to_string(finished.stop_reason) << ": "
+    std::cerr << "nextview_run: " << finished.stop_reason << ": "
               << finished.stop_detail << std::endl;
   }
   return status;

@@ -76,7 +76,7 @@ TEST(Views, AreOneRowEach) {
 TEST(Summary, SaysHowTheRunEnded) {
   FinishedRun run = two_views();
   run.collisions = 1;
-  run.stop_reason = StopReason::NothingNew;
+  run.stop_reason = "nothing_new";
   std::ostringstream out;
   write_summary(out, run);
   const auto json = nlohmann::json::parse(out.str());
@@ -113,7 +113,7 @@ TEST(Summary, CountsAsBusAndWaitingWhatNoStageOnTheLongestWayTakes) {
 
 TEST(Summary, OfARunWithoutViewsIsWholeToo) {
   FinishedRun run;
-  run.stop_reason = StopReason::Interrupted;
+  run.stop_reason = "interrupted";
   std::ostringstream out;
   write_summary(out, run);
   const auto json = nlohmann::json::parse(out.str());

@@ -3,7 +3,9 @@
 
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <regex>
 
+#include "lcmtypes/bus.h"
 #include "tests/system/program.h"
 
 namespace nextview {
@@ -105,6 +107,29 @@ TEST_F(LongRun, SaysWhomItWaitsFor) {
     expect_readable_log("no_answer");
     std::filesystem::remove_all(folder_ / "run");
   }
+}
+
+// A stop of another version's planner, as far as the run can tell.
+TEST_F(LongRun, NamesAReasonToStopThatItDoesNotKnow) {
+  start({"--verbose"});
+  std::smatch bus;
+  ASSERT_TRUE(std::regex_search(run_->output(), bus, std::regex("bus: (\\S+), run (\\d+)")))
+      << run_->output();
+  const std::string lcm_url = bus[1];
+  Bus stranger(lcm_url, std::stoll(bus[2]), "stranger");
+  ::kill(run_->child("planner"), SIGSTOP);  // or it would go on, past the stop
+  stop_t stop{};
+  stop.run = stranger.run();
+  stop.views = 3;
+  stop.stop_reason = "bored";
+  stop.detail = "Nothing on.";
+  stranger.publish(stop);
+  EXPECT_EQ(run_->wait(), 1) << run_->output();
+  EXPECT_NE(run_->output().find("the reason \"bored\", which this version"), std::string::npos)
+      << run_->output();
+  expect_nothing_left();
+  std::ifstream file(folder_ / "run" / "summary.json");
+  EXPECT_EQ(nlohmann::json::parse(file).at("stop_reason"), "bored");
 }
 
 }  // namespace
