@@ -1,7 +1,6 @@
 #include <unistd.h>
 
 #include <csignal>
-#include <cstdlib>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
@@ -59,14 +58,6 @@ void write_artefacts(const FinishedRun& run, const ArtefactFiles& files) {
   }
 }
 
-/// Has the planner's threads (--threads) fall asleep after about a millisecond without work, which
-/// OpenMP reads from the environment when a program starts. Its default of 300 000 turns keeps them
-/// awake for so long that, where cores are scarce, nobody else gets on.
-void limit_idle_threads() {
-  constexpr int kDoNotReplace = 0;
-  ::setenv("GOMP_SPINCOUNT", "30000", kDoNotReplace);
-}
-
 int run(const nextview::RunOptions& options, nextview::Run::Clock::time_point start) {
   nextview::RunSetup setup = nextview::prepare_run(options);
   const std::filesystem::path folder = make_folder(options, setup.config.scene_name);
@@ -85,8 +76,8 @@ int run(const nextview::RunOptions& options, nextview::Run::Clock::time_point st
   if (nextview::noted_signal() != 0) return 128 + nextview::noted_signal();
   const int status = nextview::exit_status(finished.stop_reason);
   if (status != 0) {
-    std::cerr << "nextview_run: " << finished.stop_reason << ": "
-              << finished.stop_detail << std::endl;
+    std::cerr << "nextview_run: " << finished.stop_reason << ": " << finished.stop_detail
+              << std::endl;
   }
   return status;
 }
@@ -98,7 +89,6 @@ int main(int argc, char** argv) {
   int exit_status = 0;
   const auto options = nextview::parse_run_options(argc, argv, exit_status);
   if (!options) return exit_status;
-  limit_idle_threads();
   nextview::note_signals();
   std::signal(SIGPIPE, SIG_IGN);
   try {
