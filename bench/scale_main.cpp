@@ -13,17 +13,12 @@
 #include "planner/prediction/fast_view_predictor.h"
 #include "planner/prediction/free_space_field.h"
 #include "planner/prediction/orientations.h"
+#include "report/median.h"
 #include "scene/mesh_file.h"
 
 namespace nextview {
 
 namespace {
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
 
 double worst(const std::vector<double>& values) {
   return values.empty() ? 0.0 : *std::max_element(values.begin(), values.end());

@@ -12,7 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "report/median.h"
+
 namespace {
+
+using nextview::median;
 
 using Json = nlohmann::ordered_json;
 
@@ -23,13 +27,6 @@ struct Figure {
   std::map<std::string, std::vector<double>> counters;
 };
 using Figures = std::map<std::string, Figure>;  // by name, options of the library cut off
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
 
 // Half of the repetitions' whole range, as a share of the median.
 double spread(const std::vector<double>& values) {

@@ -6,6 +6,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "report/median.h"
+
 namespace nextview {
 namespace {
 
@@ -90,13 +92,6 @@ std::string decision_text(const ViewRow& row) {
 
 ArtefactFiles::ArtefactFiles(const std::filesystem::path& folder)
     : log(folder / "run.lcmlog"), views(folder / "views.csv"), summary(folder / "summary.json") {}
-
-double median(std::vector<double> values) {
-  if (values.empty()) return 0.0;
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
 
 void write_views(std::ostream& out, const FinishedRun& run) {
   out << "view,x_m,y_m,z_m,pan_deg,tilt_deg,fitness,iterations,evaluations,plan_s,mean_quality,"

@@ -47,7 +47,4 @@ void write_summary(std::ostream& out, const FinishedRun& run);
 /// The table people see at the end.
 void write_table(std::ostream& out, const FinishedRun& run);
 
-/// The median; 0 of no values.
-double median(std::vector<double> values);
-
 }  // namespace nextview

@@ -121,13 +121,6 @@ TEST(Summary, OfARunWithoutViewsIsWholeToo) {
   EXPECT_TRUE(json.at("surface_coverage").is_null());
 }
 
-TEST(Median, IsTheMiddle) {
-  EXPECT_EQ(median({}), 0.0);
-  EXPECT_EQ(median({3.0}), 3.0);
-  EXPECT_EQ(median({3.0, 1.0, 2.0}), 2.0);
-  EXPECT_EQ(median({4.0, 1.0, 2.0, 3.0}), 2.5);
-}
-
 TEST(Progress, IsOneLineAView) {
   std::ostringstream out;
   Progress progress(out, Progress::Style::Lines, 2);
