@@ -3,28 +3,26 @@
 #include <cmath>
 #include <vector>
 
+#include "lcmtypes/timing_message.h"
 #include "scene/scene_config.h"
+#include "sensor/sensor_config.h"
 
 namespace nextview {
 namespace {
 
-SensorPose start_of(const run_config_t& config) {
-  return {Eigen::Vector3d(config.start_m), config.start_pan_rad, config.start_tilt_rad};
-}
-
-arrival_t arrival_message(const goal_t& goal, const Motion& motion, double move_wall_s) {
+arrival_t arrival_message(const goal_t& goal, const Motion& motion) {
   arrival_t arrival{};
   arrival.utime = goal.utime + std::llround(motion.duration_s * 1e6);
   arrival.view = goal.view;
   arrival.attempt = goal.attempt;
   arrival.arrived = motion.arrived;
   for (int axis = 0; axis < 3; ++axis) {
-    arrival.arrival_position_m[axis] = motion.pose.position_m[axis];
+    arrival.true_position_m[axis] = motion.pose.position_m[axis];
+    arrival.believed_position_m[axis] = motion.pose.position_m[axis];
   }
-  arrival.pan_rad = motion.pose.pan_rad;
-  arrival.tilt_rad = motion.pose.tilt_rad;
+  arrival.true_pan_rad = arrival.believed_pan_rad = motion.pose.pan_rad;
+  arrival.true_tilt_rad = arrival.believed_tilt_rad = motion.pose.tilt_rad;
   arrival.path_length_m = motion.path_length_m;
-  arrival.move_wall_s = move_wall_s;
   arrival.refusal = motion.refusal;
   return arrival;
 }
@@ -32,20 +30,20 @@ arrival_t arrival_message(const goal_t& goal, const Motion& motion, double move_
 }  // namespace
 
 BaseLimits base_limits_of(const run_config_t& config) {
-  return {.workspace_min_m = Eigen::Vector3d(config.workspace_min_m),
-          .workspace_max_m = Eigen::Vector3d(config.workspace_max_m),
-          .lift_min_m = config.lift_min_m,
-          .lift_max_m = config.lift_max_m,
-          .base_speed_m_s = config.base_speed_m_s,
-          .lift_speed_m_s = config.lift_speed_m_s,
-          .turn_speed_rad_s = config.turn_speed_rad_s,
-          .body_radius_m = config.body_radius_m};
+  return {.workspace_min_m = Eigen::Vector3d(config.base.workspace_min_m),
+          .workspace_max_m = Eigen::Vector3d(config.base.workspace_max_m),
+          .lift_min_m = config.base.lift_min_m,
+          .lift_max_m = config.base.lift_max_m,
+          .base_speed_m_s = config.base.base_speed_m_s,
+          .lift_speed_m_s = config.base.lift_speed_m_s,
+          .turn_speed_rad_s = config.base.turn_speed_rad_s,
+          .body_radius_m = config.base.body_radius_m};
 }
 
 BaseSimProcess::BaseSimProcess(Bus& bus, const run_config_t& config)
     : bus_(bus),
       scene_(load_scene(config)),
-      base_(base_limits_of(config), start_of(config), scene_) {
+      base_(base_limits_of(config), start_pose_of(config), scene_) {
   bus_.on<goal_t>([this](const goal_t& goal) { goals_.push_back(goal); });
 }
 
@@ -60,7 +58,9 @@ bool BaseSimProcess::step() {
   const auto start = std::chrono::steady_clock::now();
   const Motion motion = base_.move(waypoints_m, pose);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  bus_.publish(arrival_message(goal, motion, wall.count()));
+  bus_.publish(arrival_message(goal, motion));
+  bus_.publish(
+      timing_message(bus_.role(), goal.utime, goal.view, goal.attempt, {{"move", wall.count()}}));
   return true;
 }
 

@@ -167,7 +167,7 @@ void register_scan(const BenchOptions&) {
     register_scan("nextview_range_image", setting,
                   [](ScanSetting& s) { benchmark::DoNotOptimize(scan_once(s)); });
     register_scan("nextview", setting, [](ScanSetting& s) {
-      for (const range_image_t& part : range_image_messages(scan_once(s), 1, 1, 0, 0.0)) {
+      for (const range_image_t& part : range_image_messages(scan_once(s), 1, 1, 0)) {
         benchmark::DoNotOptimize(encode(part));
       }
     });

@@ -60,7 +60,7 @@ void Bus::answer(const request_t& request) {
          (request.attempt == 0 || message->first.attempt == request.attempt);
          ++message) {
       found = true;
-      ++counters_.answered;
+      ++counters_.lost;
       transport_->publish(channel->first, message->second);
     }
   }
@@ -68,7 +68,7 @@ void Bus::answer(const request_t& request) {
 }
 
 void Bus::drop(std::string_view channel, std::string_view reason) {
-  ++counters_.dropped;
+  ++counters_.refused;
   std::cerr << role_ << ": dropped a message on " << channel << ": " << reason << std::endl;
 }
 

@@ -28,11 +28,11 @@ class RejectedMessage : public std::runtime_error {
 
 /// What the bus has seen since the start.
 struct BusCounters {
-  std::int64_t delivered = 0;   ///< to handlers; requests and status messages not counted
-  std::int64_t strangers = 0;   ///< messages of other runs, ignored
-  std::int64_t duplicates = 0;  ///< messages seen before, ignored
-  std::int64_t dropped = 0;     ///< messages that cannot be right
-  std::int64_t answered = 0;    ///< messages sent again because somebody asked
+  std::int64_t delivered = 0;  ///< to handlers; requests and status messages not counted
+  std::int64_t foreign = 0;    ///< messages of other runs, ignored
+  std::int64_t repeated = 0;   ///< messages seen before, ignored
+  std::int64_t refused = 0;    ///< messages that cannot be right
+  std::int64_t lost = 0;       ///< messages sent again because somebody asked
 };
 
 /// Typed publish and subscribe for one run, lossless for those who ask.
@@ -121,12 +121,12 @@ void Bus::deliver(std::span<const std::uint8_t> bytes,
   const Decoded<Message> decoded = decode_checked<Message>(bytes);
   if (!decoded.message) return drop(channel, decoded.reason);
   if (decoded.message->run != run_) {
-    ++counters_.strangers;
+    ++counters_.foreign;
     return;
   }
   const MessageKey key = key_of(*decoded.message);
   if (Channel<Message>::answered && !seen_[std::string(channel)].insert(key).second) {
-    ++counters_.duplicates;
+    ++counters_.repeated;
     return;
   }
   try {

@@ -9,6 +9,8 @@
 #include <iostream>
 #include <optional>
 
+#include "lcmtypes/program_version.h"
+
 namespace nextview {
 namespace {
 
@@ -53,12 +55,14 @@ void publish_status(Bus& bus, const std::string& failure) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   status_t status{};
-  status.strangers = bus.counters().strangers;
-  status.duplicates = bus.counters().duplicates;
-  status.dropped = bus.counters().dropped;
+  status.lost = bus.counters().lost;
+  status.repeated = bus.counters().repeated;
+  status.foreign = bus.counters().foreign;
+  status.refused = bus.counters().refused;
   status.peak_memory_bytes = usage.ru_maxrss * 1024;
   status.failed = !failure.empty();
   status.role = bus.role();
+  status.program_version = program_version();
   status.detail = failure;
   bus.publish(status);
 }
@@ -123,6 +127,7 @@ int run_bus_process(int argc, char** argv, const std::string& role, const std::s
       ->required();
   app.add_flag("--end-with-parent", end_with_parent,
                "End when the process that started this one ends, however it does");
+  app.set_version_flag("--version", "nextview_" + role + " " + std::string(program_version()));
   app.footer(
       "Everything else comes from the run's configuration, NEXTVIEW_RUN_CONFIG on the bus,\n"
       "which is asked for until somebody publishes it. SIGINT and SIGTERM end the process\n"

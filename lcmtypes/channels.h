@@ -12,6 +12,7 @@
 #include <nextview/search_t.hpp>
 #include <nextview/status_t.hpp>
 #include <nextview/stop_t.hpp>
+#include <nextview/timing_t.hpp>
 #include <string_view>
 
 namespace nextview {
@@ -19,9 +20,19 @@ namespace nextview {
 /// The largest message anybody publishes: what a socket's buffer takes several of on one host.
 constexpr std::size_t kMaxMessageBytes = 60 * 1024;
 
-/// The largest raster, columns and rows added up: its ray table, which every part of a range image
-/// carries, then takes half of a message at most.
-constexpr int kMaxColumnsAndRows = 1920;
+/// A list of types.
+template <class... Types>
+struct TypeList {
+  static constexpr std::size_t size = sizeof...(Types);
+};
+
+/// Every type of message. Whoever handles all of them goes by this list: for_each_channel, the
+/// encoder, the tests of every type. A test holds it against the .lcm files of this folder.
+using AllMessages = TypeList<run_config_t, goal_t, search_t, arrival_t, range_image_t, commit_t,
+                             stop_t, status_t, request_t, timing_t>;
+
+/// The largest raster a range image may have, columns and rows each.
+constexpr int kMaxColumnsOrRows = 4096;
 
 /// What tells the messages of one channel of one run apart.
 struct MessageKey {
@@ -41,8 +52,7 @@ struct LengthField {
 ///   name      the channel
 ///   answered  whether what was published is kept and sent again, unchanged, to whoever asks
 ///   lengths   the array lengths of the encoded message, all of them at fixed offsets at its front
-///   strings   how many strings it has, all of them side by side ...
-///   tail      ... followed by this many bytes
+///   strings   how many strings it has, all of them side by side at its end
 /// With these the exact size of a message is known before the generated code decodes it. The
 /// generated code believes lengths and crashes on wrong ones.
 template <class Message>
@@ -59,17 +69,17 @@ struct Channel<run_config_t> {
   static constexpr std::string_view name = "NEXTVIEW_RUN_CONFIG";
   static constexpr bool answered = true;
   static constexpr channel_detail::NoLengths lengths = {};
-  static constexpr int strings = 5;
-  static constexpr std::size_t tail = 0;
+  static constexpr int strings = 6;
 };
 
 template <>
 struct Channel<goal_t> {
   static constexpr std::string_view name = "NEXTVIEW_GOAL";
   static constexpr bool answered = true;
-  static constexpr std::array<LengthField, 1> lengths = {{{channel_detail::kFirstLength, 24}}};
-  static constexpr int strings = 0;
-  static constexpr std::size_t tail = 0;
+  static constexpr std::array<LengthField, 2> lengths = {
+      {{channel_detail::kFirstLength, 24},       // waypoints
+       {channel_detail::kFirstLength + 4, 8}}};  // factors
+  static constexpr int strings = 3;
 };
 
 template <>
@@ -78,7 +88,6 @@ struct Channel<search_t> {
   static constexpr bool answered = true;
   static constexpr std::array<LengthField, 1> lengths = {{{channel_detail::kFirstLength, 49}}};
   static constexpr int strings = 0;
-  static constexpr std::size_t tail = 0;
 };
 
 template <>
@@ -87,19 +96,16 @@ struct Channel<arrival_t> {
   static constexpr bool answered = true;
   static constexpr channel_detail::NoLengths lengths = {};
   static constexpr int strings = 1;
-  static constexpr std::size_t tail = 0;
 };
 
 template <>
 struct Channel<range_image_t> {
   static constexpr std::string_view name = "NEXTVIEW_RANGE_IMAGE";
   static constexpr bool answered = true;
-  static constexpr std::array<LengthField, 3> lengths = {
-      {{channel_detail::kFirstLength, 16},       // columns: a sine and a cosine each
-       {channel_detail::kFirstLength + 4, 16},   // rows: likewise
-       {channel_detail::kFirstLength + 8, 4}}};  // pixels: a float range each
+  static constexpr std::array<LengthField, 2> lengths = {
+      {{channel_detail::kFirstLength, 16},       // entries: a sine and a cosine each
+       {channel_detail::kFirstLength + 4, 4}}};  // pixels: a float range each
   static constexpr int strings = 0;
-  static constexpr std::size_t tail = 0;
 };
 
 template <>
@@ -107,8 +113,7 @@ struct Channel<commit_t> {
   static constexpr std::string_view name = "NEXTVIEW_COMMIT";
   static constexpr bool answered = true;
   static constexpr channel_detail::NoLengths lengths = {};
-  static constexpr int strings = 1;
-  static constexpr std::size_t tail = 16;  // two wall-clock times
+  static constexpr int strings = 2;
 };
 
 template <>
@@ -117,7 +122,6 @@ struct Channel<stop_t> {
   static constexpr bool answered = true;
   static constexpr channel_detail::NoLengths lengths = {};
   static constexpr int strings = 2;
-  static constexpr std::size_t tail = 0;
 };
 
 /// Published afresh by whoever is asked, so never kept.
@@ -126,8 +130,7 @@ struct Channel<status_t> {
   static constexpr std::string_view name = "NEXTVIEW_STATUS";
   static constexpr bool answered = false;
   static constexpr channel_detail::NoLengths lengths = {};
-  static constexpr int strings = 2;
-  static constexpr std::size_t tail = 0;
+  static constexpr int strings = 3;
 };
 
 template <>
@@ -136,22 +139,29 @@ struct Channel<request_t> {
   static constexpr bool answered = false;
   static constexpr channel_detail::NoLengths lengths = {};
   static constexpr int strings = 2;
-  static constexpr std::size_t tail = 0;
 };
+
+/// For people only: a lost one is not missed.
+template <>
+struct Channel<timing_t> {
+  static constexpr std::string_view name = "NEXTVIEW_TIMING";
+  static constexpr bool answered = false;
+  static constexpr std::array<LengthField, 1> lengths = {{{channel_detail::kFirstLength, 8}}};
+  static constexpr int strings = 2;
+};
+
+namespace channel_detail {
+template <class F, class... Messages>
+void for_each(TypeList<Messages...>, F& f) {
+  (f.template operator()<Messages>(), ...);
+}
+}  // namespace channel_detail
 
 /// Calls f.template operator()<Message>() for every type of the table: for whoever handles all
 /// channels alike, as the reader of a log does.
 template <class F>
 void for_each_channel(F&& f) {
-  f.template operator()<run_config_t>();
-  f.template operator()<goal_t>();
-  f.template operator()<search_t>();
-  f.template operator()<arrival_t>();
-  f.template operator()<range_image_t>();
-  f.template operator()<commit_t>();
-  f.template operator()<stop_t>();
-  f.template operator()<status_t>();
-  f.template operator()<request_t>();
+  channel_detail::for_each(AllMessages{}, f);
 }
 
 /// The key of a message; a request has the key of what it asks for.

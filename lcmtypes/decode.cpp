@@ -44,10 +44,11 @@ std::string check_layout(const MessageLayout& layout, std::span<const std::uint8
     return bytes.size() == expected ? "" : wrong_size(bytes.size(), expected);
   }
 
-  // The strings stand side by side: an int32 length that counts the closing NUL, then the bytes.
+  // The strings stand side by side at the end: an int32 length that counts the closing NUL, then
+  // the bytes.
   constexpr std::size_t kEmptyString = 5;
   const auto strings = static_cast<std::size_t>(layout.strings);
-  std::size_t offset = expected - strings * kEmptyString - layout.tail;
+  std::size_t offset = expected - strings * kEmptyString;
   for (std::size_t i = 0; i < strings; ++i) {
     if (offset + 4 > bytes.size()) return "ends inside a string";
     const std::int64_t length = int32_at(bytes, offset);
@@ -62,7 +63,7 @@ std::string check_layout(const MessageLayout& layout, std::span<const std::uint8
     }
     offset += text.size();
   }
-  return bytes.size() == offset + layout.tail ? "" : wrong_size(bytes.size(), offset + layout.tail);
+  return bytes.size() == offset ? "" : wrong_size(bytes.size(), offset);
 }
 
 }  // namespace nextview

@@ -25,7 +25,6 @@ struct MessageLayout {
   std::span<const LengthField> lengths;
   std::size_t smallest_bytes;  ///< encoded, with empty arrays and empty strings
   int strings;
-  std::size_t tail;
 };
 
 /// Checks fingerprint, array lengths, string lengths and total size without decoding.
@@ -38,8 +37,7 @@ template <class Message>
 Decoded<Message> decode_checked(std::span<const std::uint8_t> bytes) {
   using Table = Channel<Message>;
   const MessageLayout layout{Message::getHash(), Table::lengths,
-                             static_cast<std::size_t>(Message{}.getEncodedSize()), Table::strings,
-                             Table::tail};
+                             static_cast<std::size_t>(Message{}.getEncodedSize()), Table::strings};
   Decoded<Message> result;
   result.reason = check_layout(layout, bytes);
   if (!result.reason.empty()) return result;

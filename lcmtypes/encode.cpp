@@ -2,6 +2,8 @@
 // and one store, but g++'s loop vectoriser, on at -O3, gets at it first and makes five times as
 // much work of it; so it is off for this file (CMakeLists.txt). Flattened, because the linker would
 // be free to take the generated functions from any other file.
+#include <tuple>
+
 #include "lcmtypes/decode.h"
 
 namespace nextview {
@@ -13,14 +15,14 @@ template <class Message>
   return bytes;
 }
 
-template std::vector<std::uint8_t> encode(const arrival_t&);
-template std::vector<std::uint8_t> encode(const commit_t&);
-template std::vector<std::uint8_t> encode(const goal_t&);
-template std::vector<std::uint8_t> encode(const range_image_t&);
-template std::vector<std::uint8_t> encode(const request_t&);
-template std::vector<std::uint8_t> encode(const run_config_t&);
-template std::vector<std::uint8_t> encode(const search_t&);
-template std::vector<std::uint8_t> encode(const status_t&);
-template std::vector<std::uint8_t> encode(const stop_t&);
+namespace {
 
+template <class... Messages>
+constexpr auto encoders_of(TypeList<Messages...>) {
+  return std::tuple(&encode<Messages>...);
+}
+// Makes the encoder of every type, here and nowhere else.
+[[gnu::used]] constexpr auto kEncoders = encoders_of(AllMessages{});
+
+}  // namespace
 }  // namespace nextview

@@ -26,7 +26,7 @@ class Pacer {
   void wait_for(std::size_t bytes) {
     // lcm-logger keeps about 30 messages and a socket 200 KB: half of either is a safe burst.
     constexpr double kMessagesPerBurst = 16;
-    constexpr double kMessagesPerSecond = 1500;
+    constexpr double kMessagesPerSecond = 2000;
     constexpr double kBytesPerBurst = 100e3;
     constexpr double kBytesPerSecond = 40e6;
     const auto now = Clock::now();

@@ -12,7 +12,7 @@ namespace {
 constexpr double kHalfTurn = std::numbers::pi;
 constexpr double kQuarterTurn = std::numbers::pi / 2.0;
 /// Sines, cosines and rotations may be off by rounding, not by more.
-constexpr double kUnitTolerance = 1e-9;
+constexpr double kUnitTolerance = 1e-6;
 /// Ranges are rounded to 0.1 mm, also at the limit.
 constexpr double kRangeTolerance_m = 1e-3;
 
@@ -55,20 +55,49 @@ bool is_rotation(const double (&m)[3][3]) {
 }
 
 void check_part(Checks& checks, const range_image_t& image) {
-  checks.require(image.columns >= 2 && image.rows >= 2 &&
-                     std::int64_t{image.columns} + image.rows <= kMaxColumnsAndRows,
+  checks.require(image.columns >= 2 && image.columns <= kMaxColumnsOrRows && image.rows >= 2 &&
+                     image.rows <= kMaxColumnsOrRows,
                  "raster of " + std::to_string(image.columns) + " x " + std::to_string(image.rows));
-  const std::int64_t all = std::int64_t{image.columns} * image.rows;
-  const std::int64_t end = std::int64_t{image.first_pixel} + image.pixels;
-  checks.require(image.parts >= 1 && image.parts <= all, "parts " + std::to_string(image.parts));
+  const std::int64_t all_entries = std::int64_t{image.columns} + image.rows;
+  const std::int64_t all_pixels = std::int64_t{image.columns} * image.rows;
+  const std::int64_t entry_end = std::int64_t{image.first_entry} + image.entries;
+  const std::int64_t pixel_end = std::int64_t{image.first_pixel} + image.pixels;
+  checks.require(image.parts >= 1 && image.parts <= all_entries + all_pixels,
+                 "parts " + std::to_string(image.parts));
   checks.require(image.part >= 0 && image.part < image.parts,
                  "part " + std::to_string(image.part) + " of " + std::to_string(image.parts));
-  checks.require(image.pixels >= 1 && image.first_pixel >= 0 && end <= all,
-                 "pixels " + std::to_string(image.first_pixel) + " to " + std::to_string(end) +
-                     " of " + std::to_string(all));
-  checks.require((image.part == 0) == (image.first_pixel == 0) &&
-                     (std::int64_t{image.part} + 1 == image.parts) == (end == all),
-                 "first or last pixels in the wrong part");
+  checks.require(image.entries >= 0 && image.first_entry >= 0 && entry_end <= all_entries,
+                 "entries " + std::to_string(image.first_entry) + " to " +
+                     std::to_string(entry_end) + " of " + std::to_string(all_entries));
+  checks.require(image.pixels >= 0 && image.first_pixel >= 0 && pixel_end <= all_pixels,
+                 "pixels " + std::to_string(image.first_pixel) + " to " +
+                     std::to_string(pixel_end) + " of " + std::to_string(all_pixels));
+  checks.require(image.entries + std::int64_t{image.pixels} >= 1, "an empty part");
+  // One slice: pixels follow the last entry, and where there are none of either the slice says so.
+  checks.require(image.pixels > 0 ? entry_end == all_entries : image.first_pixel == 0,
+                 "pixels before the last entry");
+  checks.require(image.entries == 0 || image.pixels == 0 || image.first_pixel == 0,
+                 "pixels that do not follow the entries");
+  const bool begins = image.entries > 0 && image.first_entry == 0;
+  const bool ends = image.pixels > 0 && pixel_end == all_pixels;
+  checks.require(
+      (image.part == 0) == begins && (std::int64_t{image.part} + 1 == image.parts) == ends,
+      "the first or last of the image in the wrong part");
+}
+
+/// As many names as values, each of them a word.
+void check_names(Checks& checks, std::string_view field, std::string_view list,
+                 std::size_t values) {
+  const std::vector<std::string_view> names = names_of(list);
+  checks.require(names.size() == values, std::string(field) + " has " +
+                                             std::to_string(names.size()) + " names for " +
+                                             std::to_string(values) + " values");
+  for (const std::string_view name : names) {
+    checks.require(
+        !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") ==
+                             std::string_view::npos,
+        std::string(field) + " has a name that is no word of a-z, 0-9 and _");
+  }
 }
 
 // NaN and +inf are said on purpose: invalid and no return. The loop goes on to the end, wrong or
@@ -93,15 +122,19 @@ std::string check(const goal_t& goal) {
   checks.finite("position_m", goal.position_m);
   check_angles(checks, goal.pan_rad, goal.tilt_rad);
   for (const auto& waypoint : goal.waypoint_m) checks.finite("waypoint_m", waypoint);
+  checks.not_negative("path_length_m", goal.path_length_m);
   checks.not_negative("fitness", goal.fitness);
   checks.within("share_occupied", goal.share_occupied, 0.0, 1.0);
   checks.within("share_occlusion_plane", goal.share_occlusion_plane, 0.0, 1.0);
   checks.within("share_unseen", goal.share_unseen, 0.0, 1.0);
   checks.within("share_open", goal.share_open, 0.0, 1.0);
-  checks.within("quality_factor", goal.quality_factor, 0.0, 1.0);
+  for (const double factor : goal.factor_value) checks.within("factor_value", factor, 0.0, 1.0);
+  check_names(checks, "factor_names", goal.factor_names, goal.factor_value.size());
+  checks.not_negative("expected_gain_m2", goal.expected_gain_m2);
+  checks.within("overlap", goal.overlap, 0.0, 1.0);
   checks.not_negative("iterations", goal.iterations);
   checks.not_negative("evaluations", goal.evaluations);
-  checks.not_negative("plan_wall_s", goal.plan_wall_s);
+  checks.require(!goal.strategy.empty(), "no strategy");
   return checks.reason();
 }
 
@@ -111,19 +144,18 @@ std::string check(const search_t& search) {
   checks.finite("tried_pan_rad", search.tried_pan_rad);
   checks.finite("tried_tilt_rad", search.tried_tilt_rad);
   checks.finite("tried_fitness", search.tried_fitness);
-  for (const std::int8_t move : search.tried_move) checks.within("tried_move", move, 0, 5);
-  checks.not_negative("fold_wall_s", search.fold_wall_s);
-  checks.not_negative("wait_wall_s", search.wait_wall_s);
+  for (const std::int8_t move : search.tried_move) checks.within("tried_move", move, 0, 15);
   return checks.reason();
 }
 
 std::string check(const arrival_t& arrival) {
   Checks checks = check_key(arrival);
   checks.within("arrived", arrival.arrived, 0, 1);
-  checks.finite("arrival_position_m", arrival.arrival_position_m);
-  check_angles(checks, arrival.pan_rad, arrival.tilt_rad);
+  checks.finite("true_position_m", arrival.true_position_m);
+  check_angles(checks, arrival.true_pan_rad, arrival.true_tilt_rad);
+  checks.finite("believed_position_m", arrival.believed_position_m);
+  check_angles(checks, arrival.believed_pan_rad, arrival.believed_tilt_rad);
   checks.not_negative("path_length_m", arrival.path_length_m);
-  checks.not_negative("move_wall_s", arrival.move_wall_s);
   checks.require((arrival.arrived == 0) != arrival.refusal.empty(),
                  "arrived and refused, or neither");
   return checks.reason();
@@ -133,10 +165,8 @@ std::string check(const range_image_t& image) {
   Checks checks = check_key(image);
   checks.require(image.geometry == 0, "geometry " + std::to_string(image.geometry));
   check_part(checks, image);
-  checks.require(on_unit_circle(image.column_sin, image.column_cos),
-                 "sine and cosine of a column do not belong together");
-  checks.require(on_unit_circle(image.row_sin, image.row_cos),
-                 "sine and cosine of a row do not belong together");
+  checks.require(on_unit_circle(image.entry_sin, image.entry_cos),
+                 "sine and cosine of a column or row do not belong together");
   checks.not_negative("range_min_m", image.range_min_m);
   checks.positive("range_max_m", image.range_max_m);
   checks.require(image.range_min_m < image.range_max_m, "range_min_m is not below range_max_m");
@@ -145,7 +175,6 @@ std::string check(const range_image_t& image) {
   checks.require(is_rotation(image.world_from_sensor), "world_from_sensor is not a rotation");
   checks.require(are_ranges(image.range_m, image.range_max_m),
                  "a range is negative, -inf or beyond range_max_m");
-  checks.not_negative("scan_wall_s", image.scan_wall_s);
   return checks.reason();
 }
 
@@ -166,8 +195,7 @@ std::string check(const commit_t& commit) {
   checks.within("mean_quality", commit.mean_quality, 0.0, 1.0);
   checks.within("min_quality", commit.min_quality, 0.0, 1.0);
   checks.digest("map_digest", commit.map_digest);
-  checks.not_negative("update_wall_s", commit.update_wall_s);
-  checks.not_negative("digest_wall_s", commit.digest_wall_s);
+  checks.digest("history_digest", commit.history_digest);
   return checks.reason();
 }
 
@@ -175,8 +203,6 @@ std::string check(const stop_t& stop) {
   Checks checks = check_key(stop);
   checks.not_negative("views", stop.views);
   checks.not_negative("final_attempt", stop.final_attempt);
-  checks.not_negative("fold_wall_s", stop.fold_wall_s);
-  checks.not_negative("wait_wall_s", stop.wait_wall_s);
   checks.require(!stop.stop_reason.empty(), "no stop_reason");
   return checks.reason();
 }
@@ -184,11 +210,12 @@ std::string check(const stop_t& stop) {
 std::string check(const status_t& status) {
   Checks checks = check_key(status);
   for (const std::int64_t count :
-       {status.strangers, status.duplicates, status.dropped, status.peak_memory_bytes}) {
+       {status.lost, status.repeated, status.foreign, status.refused, status.peak_memory_bytes}) {
     checks.require(count >= 0, "count " + std::to_string(count));
   }
   checks.within("failed", status.failed, 0, 1);
   checks.require(!status.role.empty(), "no role");
+  checks.require(!status.program_version.empty(), "no program_version");
   return checks.reason();
 }
 
@@ -203,6 +230,28 @@ std::string check(const request_t& request) {
   checks.require(known, "asks for a channel nobody has");
   checks.require(!request.asker.empty(), "no asker");
   return checks.reason();
+}
+
+std::string check(const timing_t& timing) {
+  Checks checks;
+  checks.not_negative("utime", static_cast<double>(timing.utime));
+  checks.require(timing.view >= 1, "view " + std::to_string(timing.view));
+  checks.require(timing.attempt >= 0, "attempt " + std::to_string(timing.attempt));
+  for (const double duration_s : timing.duration_s) checks.not_negative("duration_s", duration_s);
+  checks.require(!timing.role.empty(), "no role");
+  check_names(checks, "duration_names", timing.duration_names, timing.duration_s.size());
+  return checks.reason();
+}
+
+std::vector<std::string_view> names_of(std::string_view list) {
+  std::vector<std::string_view> names;
+  if (list.empty()) return names;
+  for (std::size_t comma; (comma = list.find(',')) != std::string_view::npos;) {
+    names.push_back(list.substr(0, comma));
+    list.remove_prefix(comma + 1);
+  }
+  names.push_back(list);
+  return names;
 }
 
 }  // namespace nextview

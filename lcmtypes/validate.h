@@ -1,6 +1,8 @@
 #pragma once
 
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "lcmtypes/channels.h"
 
@@ -19,5 +21,9 @@ std::string check(const commit_t& commit);
 std::string check(const stop_t& stop);
 std::string check(const status_t& status);
 std::string check(const request_t& request);
+std::string check(const timing_t& timing);
+
+/// The names of a comma separated list, as goal_t::factor_names; none of an empty text.
+std::vector<std::string_view> names_of(std::string_view list);
 
 }  // namespace nextview

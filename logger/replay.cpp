@@ -19,7 +19,6 @@ std::string difference(const goal_t& logged, goal_t decided) {
   decided.run = logged.run;
   decided.view = logged.view;
   decided.attempt = logged.attempt;
-  decided.plan_wall_s = logged.plan_wall_s;
   if (encode(logged) == encode(decided)) return {};
   const bool same_pose = std::equal(logged.position_m, logged.position_m + 3, decided.position_m) &&
                          logged.pan_rad == decided.pan_rad && logged.tilt_rad == decided.tilt_rad;
@@ -37,8 +36,6 @@ bool same_search(const search_t& logged, search_t decided) {
   decided.run = logged.run;
   decided.view = logged.view;
   decided.attempt = logged.attempt;
-  decided.fold_wall_s = logged.fold_wall_s;
-  decided.wait_wall_s = logged.wait_wall_s;
   return encode(logged) == encode(decided);
 }
 
@@ -91,6 +88,7 @@ ReplayReport replay(const RunLog& log, const ReplayOptions& options) {
   const int views = record.stop() ? record.stop()->views : record.latest_view();
 
   const std::unique_ptr<ViewPlanner> planner = make_view_planner(*record.config());
+  std::string history;
   for (int view = 1; view <= views; ++view) {
     const auto missing = record.missing_of_view(view);
     if (!missing.empty()) {
@@ -102,11 +100,18 @@ ReplayReport replay(const RunLog& log, const ReplayOptions& options) {
         !decide_view(record, *planner, view, commit.attempt, report)) {
       return report;
     }
-    planner->fold(record.range_image(view, commit.attempt)->received.image);
+    const ReceivedRangeImage& received = *record.range_image(view, commit.attempt);
+    planner->fold(received.image);
     const std::string digest = planner->builder().digest();
     if (digest != commit.map_digest) {
       report.disagreement = of_view(view) + ": the map rebuilt has digest " + digest +
                             ", the one committed had " + commit.map_digest;
+      return report;
+    }
+    history = history_digest(history, received);
+    if (history != commit.history_digest) {
+      report.disagreement = of_view(view) + ": the range images so far have history digest " +
+                            history + ", the commit says " + commit.history_digest;
       return report;
     }
     ++report.views;

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "lcmtypes/program_version.h"
 #include "logger/replay.h"
 
 namespace {
@@ -60,6 +61,7 @@ int main(int argc, char** argv) {
   app.footer(
       "Exit status: 0 when all agrees; 1 otherwise, after one line that names the first view that\n"
       "differs or is missing, or what is wrong with the log.");
+  app.set_version_flag("--version", "nextview_replay " + std::string(nextview::program_version()));
   CLI11_PARSE(app, argc, argv);
   try {
     return replay_run(folder, run, options);

@@ -70,9 +70,12 @@ void RunLog::take_as(const LoggedMessage& message) {
       }
       return;
     }
+  }
+  if constexpr (requires { record_.add(*decoded.message); }) {
     try {
       record_.add(*decoded.message);
     } catch (const RejectedMessage& rejected) {
+      const MessageKey key = key_of(*decoded.message);
       dropped_.push_back(describe(MissingMessage{Channel<Message>::name, key.view, key.attempt}) +
                          " does not fit the rest: " + rejected.what());
     }

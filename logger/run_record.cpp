@@ -30,10 +30,11 @@ std::string describe(const MissingMessage& missing) {
 
 void RunRecord::check_fits(int view, int attempt) const {
   if (!config_) throw RejectedMessage("it came before the run's configuration");
-  if (view > config_->max_views || attempt > config_->max_attempts) {
+  if (view > config_->planner.max_views || attempt > config_->planner.max_attempts) {
     throw RejectedMessage("view " + std::to_string(view) + ", attempt " + std::to_string(attempt) +
-                          " of a run of " + std::to_string(config_->max_views) + " views, " +
-                          std::to_string(config_->max_attempts) + " attempts each");
+                          " of a run of " + std::to_string(config_->planner.max_views) +
+                          " views, " + std::to_string(config_->planner.max_attempts) +
+                          " attempts each");
   }
 }
 
@@ -66,13 +67,27 @@ void RunRecord::add(const range_image_t& part) {
   check_fits(part.view, part.attempt);
   const MessageKey key{part.view, part.attempt, 0};
   if (whole_images_.contains(key)) return;
-  scan_wall_s_.emplace(key, part.scan_wall_s);
   auto image = assembler_.add(part);
   if (!image) return;
   whole_images_.insert(key);
   if (range_images_ == RangeImages::Keep) {
-    images_.emplace(key, RecordedRangeImage{std::move(*image), scan_wall_s_.at(key)});
+    images_.emplace(key, std::move(*image));
   }
+}
+
+void RunRecord::add(const timing_t& timing) {
+  // Those of the last view come with the one after it.
+  check_fits(timing.view - 1, timing.attempt);
+  const std::vector<std::string_view> names = names_of(timing.duration_names);
+  for (std::size_t i = 0; i < names.size(); ++i) {
+    durations_s_.emplace(std::tuple(timing.view, timing.attempt, std::string(names[i])),
+                         timing.duration_s[i]);
+  }
+}
+
+std::optional<double> RunRecord::duration_s(int view, int attempt, const std::string& name) const {
+  const double* found = find_in(durations_s_, std::tuple(view, attempt, name));
+  return found == nullptr ? std::nullopt : std::optional(*found);
 }
 
 const goal_t* RunRecord::goal(int view, int attempt) const {
@@ -85,7 +100,7 @@ const arrival_t* RunRecord::arrival(int view, int attempt) const {
   return find_in(arrivals_, MessageKey{view, attempt, 0});
 }
 const commit_t* RunRecord::commit(int view) const { return find_in(commits_, view); }
-const RecordedRangeImage* RunRecord::range_image(int view, int attempt) const {
+const ReceivedRangeImage* RunRecord::range_image(int view, int attempt) const {
   return find_in(images_, MessageKey{view, attempt, 0});
 }
 

@@ -6,6 +6,7 @@
 #include <set>
 #include <string>
 #include <string_view>
+#include <tuple>
 #include <vector>
 
 #include "lcmtypes/channels.h"
@@ -27,14 +28,9 @@ std::string describe(const MissingMessage& missing);
 /// What is to be done with range images once they are whole.
 enum class RangeImages { Keep, OnlyCount };
 
-/// A range image of a run, and the wall-clock time the scan took.
-struct RecordedRangeImage {
-  ReceivedRangeImage received;
-  double scan_wall_s = 0.0;
-};
-
 /// The messages of one run by their keys, whether they come from the bus or out of a log, and what
-/// is missing among them. Each message is added once, the configuration first.
+/// is missing among them. Each message is added once, the configuration first. Timings are there or
+/// not: nothing misses them.
 ///
 /// add() throws RejectedMessage for a view or attempt that the run cannot have, and for a part of a
 /// range image that contradicts the parts before it.
@@ -49,6 +45,7 @@ class RunRecord {
   void add(const range_image_t& part);
   void add(const commit_t& commit);
   void add(const stop_t& stop);
+  void add(const timing_t& timing);
 
   const std::optional<run_config_t>& config() const { return config_; }
   const std::optional<stop_t>& stop() const { return stop_; }
@@ -57,7 +54,9 @@ class RunRecord {
   const arrival_t* arrival(int view, int attempt) const;
   const commit_t* commit(int view) const;
   /// nullptr until all parts are there, or when images are only counted.
-  const RecordedRangeImage* range_image(int view, int attempt) const;
+  const ReceivedRangeImage* range_image(int view, int attempt) const;
+  /// A duration somebody has measured (see timing_t); nothing when it was lost.
+  std::optional<double> duration_s(int view, int attempt, const std::string& name) const;
   const std::map<MessageKey, arrival_t>& arrivals() const { return arrivals_; }
   const std::map<int, commit_t>& commits() const { return commits_; }
   /// Frees a range image that is needed no more; it still counts as there.
@@ -88,9 +87,9 @@ class RunRecord {
   std::map<MessageKey, arrival_t> arrivals_;
   std::map<int, commit_t> commits_;
   RangeImageAssembler assembler_;
-  std::map<MessageKey, double> scan_wall_s_;
+  std::map<std::tuple<int, int, std::string>, double> durations_s_;  // by view, attempt, name
   std::set<MessageKey> whole_images_;
-  std::map<MessageKey, RecordedRangeImage> images_;
+  std::map<MessageKey, ReceivedRangeImage> images_;
 };
 
 }  // namespace nextview

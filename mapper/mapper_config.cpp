@@ -7,19 +7,20 @@
 namespace nextview {
 
 VoxelGrid grid_of(const run_config_t& config) {
-  return {.voxel_size_m = config.voxel_size_m, .origin_m = Eigen::Vector3d(config.map_origin_m)};
+  return {.voxel_size_m = config.map.voxel_size_m,
+          .origin_m = Eigen::Vector3d(config.map.map_origin_m)};
 }
 
 MapWindow window_of(const run_config_t& config) {
-  return {.min = VoxelIndex(config.window_min), .size = VoxelIndex(config.window_size)};
+  return {.min = VoxelIndex(config.map.window_min), .size = VoxelIndex(config.map.window_size)};
 }
 
 void check_fits_run(const range_image_t& image, const run_config_t& config) {
-  if (image.view > config.max_views || image.attempt > config.max_attempts) {
+  if (image.view > config.planner.max_views || image.attempt > config.planner.max_attempts) {
     throw RejectedMessage("view " + std::to_string(image.view) + ", attempt " +
                           std::to_string(image.attempt) + " of a run of " +
-                          std::to_string(config.max_views) + " views, " +
-                          std::to_string(config.max_attempts) + " attempts each");
+                          std::to_string(config.planner.max_views) + " views, " +
+                          std::to_string(config.planner.max_attempts) + " attempts each");
   }
   const VoxelGrid grid = grid_of(config);
   const Eigen::Vector3d position_m(image.position_m);

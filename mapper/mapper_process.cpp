@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "lcmtypes/timing_message.h"
 #include "mapper/mapper_config.h"
 
 namespace nextview {
@@ -40,8 +41,13 @@ bool MapperProcess::step() {
   const FoldReport& report = builder_.fold(received.image);
   const double update_wall_s = seconds_since(start);
   commit_t commit = commit_message(received, report);
-  commit.update_wall_s = update_wall_s;
+  const auto digest_start = Clock::now();
+  commit.map_digest = builder_.digest();
+  const double digest_wall_s = seconds_since(digest_start);
+  commit.history_digest = history_digest_ = history_digest(history_digest_, received);
   bus_.publish(commit);
+  bus_.publish(timing_message(bus_.role(), received.utime, received.view, received.attempt,
+                              {{"update", update_wall_s}, {"digest", digest_wall_s}}));
   ++next_view_;
   return true;
 }
@@ -73,10 +79,6 @@ commit_t MapperProcess::commit_message(const ReceivedRangeImage& received,
   commit.points_outside = report.points_outside;
   commit.no_returns = report.no_returns;
   commit.invalid = report.invalid;
-
-  const auto start = Clock::now();
-  commit.map_digest = builder_.digest();
-  commit.digest_wall_s = seconds_since(start);
   return commit;
 }
 

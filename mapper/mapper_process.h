@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <string>
 
 #include "lcmtypes/bus_process.h"
 #include "mapper/map_builder.h"
@@ -30,6 +31,7 @@ class MapperProcess : public BusProcess {
   RangeImageAssembler assembler_;
   std::map<int, ReceivedRangeImage> waiting_;  // by view; the first attempt that came whole counts
   int next_view_ = 1;
+  std::string history_digest_;  // of the last commit
 };
 
 }  // namespace nextview

@@ -1,5 +1,8 @@
 #include "planner/goal_message.h"
 
+#include <cmath>
+#include <string>
+
 namespace nextview {
 namespace {
 
@@ -12,7 +15,20 @@ goal_t goal_at(const SensorPose& pose, std::span<const Eigen::Vector3d> waypoint
   for (const Eigen::Vector3d& waypoint_m : waypoints_m) {
     goal.waypoint_m.push_back({waypoint_m.x(), waypoint_m.y(), waypoint_m.z()});
   }
+  for (std::size_t i = 1; i < waypoints_m.size(); ++i) {
+    goal.path_length_m += (waypoints_m[i] - waypoints_m[i - 1]).norm();
+  }
+  goal.strategy = "paper";
   return goal;
+}
+
+std::string reason_of(const Decision& decision) {
+  const auto percent = [](double share) { return std::to_string(std::lround(100.0 * share)); };
+  const Fitness& fitness = decision.fitness;
+  return "the best of " + std::to_string(decision.evaluations) +
+         " positions tried: of what its rays meet " + percent(fitness.share_occupied) +
+         " % is Occupied, " + percent(fitness.share_occlusion_plane) +
+         " % an occlusion plane and " + percent(fitness.share_unseen) + " % unseen";
 }
 
 }  // namespace
@@ -24,7 +40,10 @@ goal_t goal_message(const Decision& decision) {
   goal.share_occlusion_plane = decision.fitness.share_occlusion_plane;
   goal.share_unseen = decision.fitness.share_unseen;
   goal.share_open = decision.fitness.share_open;
-  goal.quality_factor = decision.fitness.factors[kQualityFactor];
+  goal.factors = 1;
+  goal.factor_value = {decision.fitness.factors[kQualityFactor]};
+  goal.factor_names = "quality";
+  goal.reason = reason_of(decision);
   goal.iterations = decision.iterations;
   goal.evaluations = decision.evaluations;
   return goal;
@@ -45,7 +64,9 @@ search_t search_message(const Decision& decision) {
 }
 
 goal_t start_goal_message(const SensorPose& start) {
-  return goal_at(start, std::span(&start.position_m, 1));
+  goal_t goal = goal_at(start, std::span(&start.position_m, 1));
+  goal.reason = "the scan at the start";
+  return goal;
 }
 
 }  // namespace nextview

@@ -5,8 +5,8 @@
 
 namespace nextview {
 
-/// A decision as it travels: the goal, and what was tried on the way to it. The keys, utime and
-/// wall-clock times are left for the sender to fill in.
+/// A decision as it travels: the goal, and what was tried on the way to it. The keys and
+/// utime are left for the sender to fill in.
 goal_t goal_message(const Decision& decision);
 search_t search_message(const Decision& decision);
 

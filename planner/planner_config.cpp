@@ -12,26 +12,26 @@ namespace {
 
 PlannerParameters planner_parameters_of(const run_config_t& config) {
   PlannerParameters parameters;
-  parameters.use_quality = config.use_quality != 0;
-  parameters.step_min_m = config.step_min_m;
-  parameters.step_max_m = config.step_max_m;
-  parameters.fitness_tolerance = config.fitness_tolerance;
-  parameters.max_evaluations = config.max_evaluations;
-  parameters.feasibility.clearance_m = config.clearance_m;
-  parameters.feasibility.body_radius_m = config.body_radius_m;
-  parameters.feasibility.departure_m = config.departure_m;
-  parameters.feasibility.workspace_min_m = Eigen::Vector3d(config.workspace_min_m);
-  parameters.feasibility.workspace_max_m = Eigen::Vector3d(config.workspace_max_m);
-  parameters.feasibility.lift_min_m = config.lift_min_m;
-  parameters.feasibility.lift_max_m = config.lift_max_m;
+  parameters.use_quality = config.planner.quality_weight > 0.0;
+  parameters.step_min_m = config.planner.step_min_m;
+  parameters.step_max_m = config.planner.step_max_m;
+  parameters.fitness_tolerance = config.planner.fitness_tolerance;
+  parameters.max_evaluations = config.planner.max_evaluations;
+  parameters.feasibility.clearance_m = config.planner.clearance_m;
+  parameters.feasibility.body_radius_m = config.base.body_radius_m;
+  parameters.feasibility.departure_m = config.planner.departure_m;
+  parameters.feasibility.workspace_min_m = Eigen::Vector3d(config.base.workspace_min_m);
+  parameters.feasibility.workspace_max_m = Eigen::Vector3d(config.base.workspace_max_m);
+  parameters.feasibility.lift_min_m = config.base.lift_min_m;
+  parameters.feasibility.lift_max_m = config.base.lift_max_m;
   return parameters;
 }
 
 StopParameters stop_parameters_of(const run_config_t& config) {
-  return {.use_quality = config.use_quality != 0,
-          .quality_threshold = config.quality_threshold,
-          .stop_window_views = config.stop_window_views,
-          .stop_new_area_m2 = config.stop_new_area_m2};
+  return {.use_quality = config.planner.stop_rule == 2,
+          .quality_threshold = config.planner.quality_threshold,
+          .stop_window_views = config.planner.stop_window_views,
+          .stop_new_area_m2 = config.planner.stop_new_area_m2};
 }
 
 /// Every ray of every orientation, or with more than 20 orientations and quality off one panorama
@@ -39,33 +39,30 @@ StopParameters stop_parameters_of(const run_config_t& config) {
 std::unique_ptr<ViewPredictor> make_predictor(const run_config_t& config) {
   const PredictionRaster raster = prediction_raster(sensor_of(config), range_limits_of(config));
   int subdivisions = 0;
-  for (int faces = 20; faces < config.directions; faces *= 4) ++subdivisions;
+  for (int faces = 20; faces < config.planner.directions; faces *= 4) ++subdivisions;
   std::vector<Orientation> orientations = icosahedron_orientations(subdivisions);
-  const bool use_quality = config.use_quality != 0;
+  const bool use_quality = config.planner.quality_weight > 0.0;
   if (subdivisions > 0 && !use_quality) {
-    return std::make_unique<PanoramaViewPredictor>(raster, config.voxel_size_m,
-                                                   std::move(orientations), config.threads);
+    return std::make_unique<PanoramaViewPredictor>(raster, config.map.voxel_size_m,
+                                                   std::move(orientations), config.planner.threads);
   }
-  return std::make_unique<FastViewPredictor>(raster, config.voxel_size_m, std::move(orientations),
-                                             use_quality, config.threads);
+  return std::make_unique<FastViewPredictor>(raster, config.map.voxel_size_m,
+                                             std::move(orientations), use_quality,
+                                             config.planner.threads);
 }
 
 std::unique_ptr<Strategy> make_strategy(const run_config_t& config) {
   return std::make_unique<PaperStrategy>(planner_parameters_of(config), stop_parameters_of(config),
-                                         config.voxel_size_m, make_predictor(config));
+                                         config.map.voxel_size_m, make_predictor(config));
 }
 
 }  // namespace
 
 std::unique_ptr<ViewPlanner> make_view_planner(const run_config_t& config) {
-  return std::make_unique<ViewPlanner>(
-      grid_of(config), window_of(config), make_strategy(config),
-      ViewPlanner::Parameters{
-          .seed = config.seed, .max_views = config.max_views, .threads = config.threads});
-}
-
-SensorPose start_pose_of(const run_config_t& config) {
-  return {Eigen::Vector3d(config.start_m), config.start_pan_rad, config.start_tilt_rad};
+  return std::make_unique<ViewPlanner>(grid_of(config), window_of(config), make_strategy(config),
+                                       ViewPlanner::Parameters{.seed = config.seed,
+                                                               .max_views = config.planner.max_views,
+                                                               .threads = config.planner.threads});
 }
 
 }  // namespace nextview

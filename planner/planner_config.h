@@ -11,7 +11,4 @@ namespace nextview {
 /// @throws std::invalid_argument for parameters that cannot be
 std::unique_ptr<ViewPlanner> make_view_planner(const run_config_t& config);
 
-/// The pose of view 1.
-SensorPose start_pose_of(const run_config_t& config);
-
 }  // namespace nextview

@@ -1,8 +1,10 @@
 #include "planner/planner_process.h"
 
+#include "lcmtypes/timing_message.h"
 #include "mapper/mapper_config.h"
 #include "planner/goal_message.h"
 #include "planner/planner_config.h"
+#include "sensor/sensor_config.h"
 
 namespace nextview {
 namespace {
@@ -92,7 +94,7 @@ void PlannerProcess::finish_view(const commit_t& commit) {
 
 void PlannerProcess::refused(const arrival_t& arrival) {
   utime_ = arrival.utime;
-  if (view_ == 1 || attempt_ >= config_.max_attempts) {
+  if (view_ == 1 || attempt_ >= config_.planner.max_attempts) {
     stop(StopReason::NoFeasibleGoal, "view " + std::to_string(view_) + ": the base refused " +
                                          std::to_string(attempt_) +
                                          " goals, the last one because " + arrival.refusal);
@@ -119,17 +121,16 @@ void PlannerProcess::publish_next() {
     return;
   }
   const Decision& decision = std::get<Decision>(next);
-  goal_t goal = goal_message(decision);
-  goal.plan_wall_s = plan_wall_s_;
-  publish_goal(std::move(goal));
+  publish_goal(goal_message(decision));
 
   search_t search = search_message(decision);
   search.utime = utime_;
   search.view = view_;
   search.attempt = attempt_;
-  search.fold_wall_s = fold_wall_s_;
-  search.wait_wall_s = wait_wall_s_;
   bus_.publish(search);
+  bus_.publish(timing_message(
+      bus_.role(), utime_, view_, attempt_,
+      {{"plan", plan_wall_s_}, {"fold_before", fold_wall_s_}, {"wait_before", wait_wall_s_}}));
 }
 
 void PlannerProcess::publish_goal(goal_t goal) {
@@ -145,10 +146,12 @@ void PlannerProcess::stop(StopReason reason, const std::string& detail) {
   message.utime = utime_;
   message.views = planner_->views();
   message.final_attempt = attempt_;
-  message.fold_wall_s = fold_wall_s_;
-  message.wait_wall_s = wait_wall_s_;
   message.stop_reason = std::string(to_string(reason));
   message.detail = detail;
+  if (planner_->views() > 0) {
+    bus_.publish(timing_message(bus_.role(), utime_, planner_->views() + 1, 0,
+                                {{"fold_before", fold_wall_s_}, {"wait_before", wait_wall_s_}}));
+  }
   bus_.publish(message);
   ended_ = true;
 }

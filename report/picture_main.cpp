@@ -3,6 +3,7 @@
 #include <iostream>
 #include <vector>
 
+#include "lcmtypes/program_version.h"
 #include "logger/run_log.h"
 #include "mapper/map_builder.h"
 #include "mapper/mapper_config.h"
@@ -26,8 +27,8 @@ void draw_run(const std::filesystem::path& folder, const std::filesystem::path& 
     const nextview::commit_t* commit = record.commit(i);
     if (commit == nullptr || !record.missing_of_view(i).empty()) break;
     const auto* logged = record.range_image(i, commit->attempt);
-    builder.fold(logged->received.image);
-    poses.push_back(logged->received.image.pose);
+    builder.fold(logged->image);
+    poses.push_back(logged->image.pose);
   }
   write_png(recovered_picture(builder.map(), poses, view), file);
   std::cout << file.string() << ": " << poses.size() << " views" << std::endl;
@@ -58,6 +59,7 @@ int main(int argc, char** argv) {
   app.add_option("--height", view.height, "Pixels")
       ->check(CLI::Range(16, 8192))
       ->capture_default_str();
+  app.set_version_flag("--version", "nextview_picture " + std::string(nextview::program_version()));
   CLI11_PARSE(app, argc, argv);
   try {
     draw_run(folder,

@@ -15,9 +15,11 @@ std::string numbers_of(const ViewRow& row) {
   if (row.surface_coverage) {
     std::snprintf(coverage, sizeof coverage, "%.3f", *row.surface_coverage);
   }
-  char decided[48] = "start";
-  if (row.chosen()) {
-    std::snprintf(decided, sizeof decided, "decided in %.1f ms", 1e3 * row.goal.plan_wall_s);
+  char decided[48] = "";
+  if (!row.chosen()) {
+    std::snprintf(decided, sizeof decided, "start");
+  } else if (row.plan_s) {
+    std::snprintf(decided, sizeof decided, "decided in %.1f ms", 1e3 * *row.plan_s);
   }
   char text[160];
   std::snprintf(text, sizeof text, "coverage %s  quality %.3f  %s", coverage,

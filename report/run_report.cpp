@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cstdio>
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -21,37 +20,25 @@ std::string format(const char* pattern, Values... values) {
   return text;
 }
 
+using Duration = ViewRow::Duration;
+
 /// Where the time of a view goes; fold and wait are the planner's.
 struct Stage {
   const char* name;
-  std::function<double(const ViewRow&)> wall_s;
+  Duration ViewRow::*duration;
 };
-const std::vector<Stage>& stages() {
-  static const std::vector<Stage> all = {
-      {"plan", [](const ViewRow& row) { return row.goal.plan_wall_s; }},
-      {"move", [](const ViewRow& row) { return row.arrival.move_wall_s; }},
-      {"scan", [](const ViewRow& row) { return row.scan_wall_s; }},
-      {"update", [](const ViewRow& row) { return row.commit.update_wall_s; }},
-      {"digest", [](const ViewRow& row) { return row.commit.digest_wall_s; }},
-      {"fold", [](const ViewRow& row) { return row.fold_wall_s; }},
-      {"wait", [](const ViewRow& row) { return row.wait_wall_s; }}};
-  return all;
-}
+constexpr Stage kStages[] = {{"plan", &ViewRow::plan_s},     {"move", &ViewRow::move_s},
+                             {"scan", &ViewRow::scan_s},     {"update", &ViewRow::update_s},
+                             {"digest", &ViewRow::digest_s}, {"fold", &ViewRow::fold_s},
+                             {"wait", &ViewRow::wait_s}};
 
-std::vector<double> of_rows(const FinishedRun& run,
-                            const std::function<double(const ViewRow&)>& f) {
-  std::vector<double> values;
-  for (const ViewRow& row : run.rows) values.push_back(f(row));
-  return values;
-}
-
-/// Of the views that were decided on, so not the first.
-std::vector<double> plan_times(const FinishedRun& run) {
+/// The median of what is known of a stage.
+double median_s(const FinishedRun& run, const Stage& stage) {
   std::vector<double> values;
   for (const ViewRow& row : run.rows) {
-    if (row.chosen()) values.push_back(row.goal.plan_wall_s);
+    if (const Duration& duration = row.*stage.duration) values.push_back(*duration);
   }
-  return values;
+  return median(values);
 }
 
 double path_length_m(const FinishedRun& run) {
@@ -62,20 +49,34 @@ double path_length_m(const FinishedRun& run) {
 
 /// The share of the time from first goal to last commit in which no stage worked that the next
 /// goal waits for. It waits for two at once: the mapper's update and digest, and the planner's own
-/// fold and decision. The longer one counts.
+/// fold and decision. The longer one counts. A timing that was lost counts as waiting.
 double bus_and_waiting_share(const FinishedRun& run) {
   if (run.first_goal_to_last_commit_s <= 0.0) return 0.0;
   double working_s = 0.0;
   for (std::size_t i = 0; i < run.rows.size(); ++i) {
     const ViewRow& row = run.rows[i];
-    const double mapper_s = row.commit.update_wall_s + row.commit.digest_wall_s;
+    const double mapper_s = row.update_s.value_or(0.0) + row.digest_s.value_or(0.0);
     // The time ends with the last commit, whatever the planner does beside it.
     const bool last = i + 1 == run.rows.size();
-    const double planner_s = last ? 0.0 : row.fold_wall_s + run.rows[i + 1].first_plan_wall_s;
-    working_s += row.refused_wall_s + row.arrival.move_wall_s + row.scan_wall_s +
+    const double planner_s =
+        last ? 0.0 : row.fold_s.value_or(0.0) + run.rows[i + 1].first_plan_s.value_or(0.0);
+    working_s += row.refused_s.value_or(0.0) + row.move_s.value_or(0.0) + row.scan_s.value_or(0.0) +
                  std::max(mapper_s, planner_s);
   }
   return std::max(0.0, 1.0 - working_s / run.first_goal_to_last_commit_s);
+}
+
+/// Seconds, or a blank where the timing was lost.
+std::string seconds_text(const Duration& duration) {
+  return duration ? format("%.6f", *duration) : std::string();
+}
+
+/// The value of one of a goal's factors; 0 of one it does not have.
+double factor_of(const goal_t& goal, std::string_view name) {
+  const std::vector<std::string_view> names = names_of(goal.factor_names);
+  const auto found = std::find(names.begin(), names.end(), name);
+  if (found == names.end()) return 0.0;
+  return goal.factor_value[static_cast<std::size_t>(found - names.begin())];
 }
 
 std::string coverage_text(const ViewRow& row) {
@@ -84,8 +85,8 @@ std::string coverage_text(const ViewRow& row) {
 
 std::string decision_text(const ViewRow& row) {
   if (!row.chosen()) return ",,,";
-  return format("%.9g,%d,%d,%.6f", row.goal.fitness, row.goal.iterations, row.goal.evaluations,
-                row.goal.plan_wall_s);
+  return format("%.9g,%d,%d,", row.goal.fitness, row.goal.iterations, row.goal.evaluations) +
+         seconds_text(row.plan_s);
 }
 
 }  // namespace
@@ -114,12 +115,16 @@ void write_views(std::ostream& out, const FinishedRun& run) {
     if (row.chosen()) {
       out << format("%.6f,%.6f,%.6f,%.6f,%.6f,", row.goal.share_occupied,
                     row.goal.share_occlusion_plane, row.goal.share_unseen, row.goal.share_open,
-                    row.goal.quality_factor);
+                    factor_of(row.goal, "quality"));
     } else {
       out << ",,,,,";
     }
-    out << format("%.6f,%.6f,%.6f,%.6f,%.6f,%.6f\n", row.arrival.move_wall_s, row.scan_wall_s,
-                  commit.update_wall_s, commit.digest_wall_s, row.fold_wall_s, row.wait_wall_s);
+    out << seconds_text(row.move_s);
+    for (const Duration& duration :
+         {row.scan_s, row.update_s, row.digest_s, row.fold_s, row.wait_s}) {
+      out << ',' << seconds_text(duration);
+    }
+    out << '\n';
   }
 }
 
@@ -140,24 +145,21 @@ void write_summary(std::ostream& out, const FinishedRun& run) {
   json["path_length_m"] = path_length_m(run);
   json["collisions"] = run.collisions;
   json["simulated_s"] = last ? static_cast<double>(last->commit.utime) * 1e-6 : 0.0;
-  json["plan_s_median"] = median(plan_times(run));
+  json["plan_s_median"] = median_s(run, kStages[0]);
   json["wall_s"] = run.wall_s;
   json["map_digest"] = last ? last->commit.map_digest : "";
 
   json["start_up_s"] = run.start_up_s;
   json["first_goal_to_last_commit_s"] = run.first_goal_to_last_commit_s;
   json["bus_and_waiting_share"] = bus_and_waiting_share(run);
-  for (const Stage& stage : stages()) {
-    json["stage_s_median"][stage.name] = std::string_view(stage.name) == "plan"
-                                             ? median(plan_times(run))
-                                             : median(of_rows(run, stage.wall_s));
-  }
+  for (const Stage& stage : kStages) json["stage_s_median"][stage.name] = median_s(run, stage);
   json["peak_memory_bytes"] = run.peak_memory_bytes;
   json["messages"] = Json::object();
   for (const auto& [role, status] : run.statuses) {
-    json["messages"][role] = {{"strangers", status.strangers},
-                              {"duplicates", status.duplicates},
-                              {"dropped", status.dropped}};
+    json["messages"][role] = {{"lost", status.lost},
+                              {"repeated", status.repeated},
+                              {"foreign", status.foreign},
+                              {"refused", status.refused}};
   }
   json["log"] = {{"messages", run.log.messages},
                  {"duplicates", run.log.duplicates},
@@ -194,10 +196,9 @@ void write_table(std::ostream& out, const FinishedRun& run) {
   line("occupied area", format("%.1f m2", last.commit.occupied_area_m2));
   line("path, collisions", format("%.1f m, %d", path_length_m(run), run.collisions));
   std::string medians;
-  for (const Stage& stage : stages()) {
-    const double s = std::string_view(stage.name) == "plan" ? median(plan_times(run))
-                                                            : median(of_rows(run, stage.wall_s));
-    medians += format("%s%s %.2f", medians.empty() ? "" : ", ", stage.name, 1e3 * s);
+  for (const Stage& stage : kStages) {
+    medians +=
+        format("%s%s %.2f", medians.empty() ? "" : ", ", stage.name, 1e3 * median_s(run, stage));
   }
   line("medians, ms", medians);
   line("wall time",

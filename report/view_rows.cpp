@@ -4,6 +4,36 @@
 
 namespace nextview {
 
+namespace {
+
+/// As far as they have come.
+void take_timings(const RunRecord& record, ViewRow& row) {
+  const int attempt = row.commit.attempt;
+  row.plan_s = record.duration_s(row.view, attempt, "plan");
+  row.first_plan_s = record.duration_s(row.view, 1, "plan");
+  row.move_s = record.duration_s(row.view, attempt, "move");
+  row.scan_s = record.duration_s(row.view, attempt, "scan");
+  row.update_s = record.duration_s(row.view, attempt, "update");
+  row.digest_s = record.duration_s(row.view, attempt, "digest");
+  // These two come with the first goal of the next view, or with the end of the run.
+  for (const int next_attempt : {1, 0}) {
+    if (!row.fold_s) row.fold_s = record.duration_s(row.view + 1, next_attempt, "fold_before");
+    if (!row.wait_s) row.wait_s = record.duration_s(row.view + 1, next_attempt, "wait_before");
+  }
+  row.refused_s = 0.0;
+  for (int refused = 1; refused < attempt; ++refused) {
+    const auto move_s = record.duration_s(row.view, refused, "move");
+    const auto plan_s = record.duration_s(row.view, refused + 1, "plan");
+    if (!move_s || !plan_s) {
+      row.refused_s.reset();
+      return;
+    }
+    *row.refused_s += *move_s + *plan_s;
+  }
+}
+
+}  // namespace
+
 ViewRows::ViewRows(const run_config_t& config) : builder_(grid_of(config), window_of(config)) {}
 
 const ViewRow* ViewRows::advance(RunRecord& record) {
@@ -15,14 +45,8 @@ const ViewRow* ViewRows::advance(RunRecord& record) {
   const int attempt = row.commit.attempt;
   row.goal = *record.goal(view, attempt);
   row.arrival = *record.arrival(view, attempt);
-  const RecordedRangeImage& image = *record.range_image(view, attempt);
-  row.scan_wall_s = image.scan_wall_s;
-  row.first_plan_wall_s = record.goal(view, 1)->plan_wall_s;
-  for (int refused = 1; refused < attempt; ++refused) {
-    row.refused_wall_s +=
-        record.arrival(view, refused)->move_wall_s + record.goal(view, refused + 1)->plan_wall_s;
-  }
-  const FoldReport& fold = builder_.fold(image.received.image);
+  take_timings(record, row);
+  const FoldReport& fold = builder_.fold(record.range_image(view, attempt)->image);
   coverage_.add_view(builder_.map(), fold);
   row.surface_coverage = coverage_.after_view(view);
   record.forget_range_image(view, attempt);
@@ -36,14 +60,7 @@ void ViewRows::set_visible(const VisibleSurface& surface) {
 void ViewRows::complete(const RunRecord& record) {
   for (ViewRow& row : rows_) {
     row.surface_coverage = coverage_.after_view(row.view);
-    // The planner says how long a view took with the goal of the next one, or at the end.
-    if (const search_t* search = record.search(row.view + 1, 1)) {
-      row.fold_wall_s = search->fold_wall_s;
-      row.wait_wall_s = search->wait_wall_s;
-    } else if (record.stop() && record.stop()->views == row.view) {
-      row.fold_wall_s = record.stop()->fold_wall_s;
-      row.wait_wall_s = record.stop()->wait_wall_s;
-    }
+    take_timings(record, row);
   }
 }
 

@@ -18,11 +18,18 @@ struct ViewRow {
   arrival_t arrival{};  ///< likewise
   commit_t commit{};
   std::optional<double> surface_coverage;
-  double scan_wall_s = 0.0;
-  double first_plan_wall_s = 0.0;  ///< the decision of attempt 1, made beside the mapper's update
-  double refused_wall_s = 0.0;     ///< refusals of the base, and the decisions that followed them
-  double fold_wall_s = 0.0;        ///< the planner's own map update and digest
-  double wait_wall_s = 0.0;        ///< of the planner, for the range image and the commit
+
+  // Wall clock, as far as the timings have come.
+  using Duration = std::optional<double>;
+  Duration plan_s;        ///< the decision for the attempt that arrived
+  Duration first_plan_s;  ///< the decision of attempt 1, made beside the mapper's update
+  Duration refused_s;     ///< refusals of the base, and the decisions that followed them
+  Duration move_s;
+  Duration scan_s;
+  Duration update_s;  ///< the mapper's
+  Duration digest_s;
+  Duration fold_s;  ///< the planner's own map update and digest
+  Duration wait_s;  ///< of the planner, for the range image and the commit
 
   bool chosen() const { return view > 1; }  ///< view 1 is the scan at the start
 };
@@ -40,7 +47,7 @@ class ViewRows {
   /// What could be seen at best has become known.
   void set_visible(const VisibleSurface& surface);
 
-  /// Fills in what is known later than the row itself: coverage, and the planner's times.
+  /// Fills in what is known later than the row itself: coverage, and the timings.
   void complete(const RunRecord& record);
 
   const std::vector<ViewRow>& rows() const { return rows_; }

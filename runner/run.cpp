@@ -8,9 +8,9 @@
 #include <random>
 #include <utility>
 
-#include "planner/planner_config.h"
 #include "runner/run_signals.h"
 #include "scoring/visible_surface.h"
+#include "sensor/sensor_config.h"
 
 namespace nextview {
 namespace {
@@ -89,6 +89,7 @@ void Run::subscribe() {
     last_commit_ = Clock::now();
   });
   bus_->on<stop_t>([this](const stop_t& stop) { add(stop); });
+  bus_->on<timing_t>([this](const timing_t& timing) { record_.add(timing); });
   bus_->on<status_t>([this](const status_t& status) {
     statuses_[status.role] = status;
     fresh_statuses_.insert(status.role);
@@ -160,7 +161,7 @@ void Run::start_scoring() {
                            promise = std::move(promise)](const std::stop_token& stop) mutable {
     give_way();
     promise.set_value(visible_surface(*scene, start_pose_of(config).position_m, reach_of(config),
-                                      config.range_max_m, stop));
+                                      config.sensor.range_max_m, stop));
   });
 }
 

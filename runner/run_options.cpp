@@ -5,6 +5,8 @@
 #include <limits>
 #include <sstream>
 
+#include "lcmtypes/program_version.h"
+
 namespace nextview {
 namespace {
 
@@ -266,6 +268,7 @@ std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_sta
       "start; 3 no feasible goal; 4 mapper and planner hold different maps; 5 somebody did not\n"
       "answer; 6 a process died; 130 or 143 ended by SIGINT or SIGTERM, the log being readable;\n"
       "above 100 otherwise: a wrong command line.");
+  app.set_version_flag("--version", "nextview_run " + std::string(program_version()));
   app.get_formatter()->column_width(30);
   add_scene_options(app, options);
   add_run_options(app, options);

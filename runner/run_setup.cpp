@@ -9,11 +9,12 @@
 #include <utility>
 
 #include "base_sim/base_sim_process.h"
+#include "lcmtypes/program_version.h"
 #include "lcmtypes/validate.h"
 #include "mapper/mapper_config.h"
-#include "planner/planner_config.h"
 #include "scene/enclosure.h"
 #include "scene/scene_catalog.h"
+#include "sensor/sensor_config.h"
 
 namespace nextview {
 namespace {
@@ -64,10 +65,10 @@ void fill_start(run_config_t& config, const RunOptions& options, const SceneDesc
                      two_decimals(bounds.max().y()) + ", " + two_decimals(bounds.min().z()) +
                      " .. " + two_decimals(bounds.max().z()) + ") m");
   }
-  for (int axis = 0; axis < 3; ++axis) config.start_m[axis] = (*start_m)[axis];
-  config.start_pan_rad = scene.start_pan_rad.value_or(0.0);
-  if (options.start_pan_deg) config.start_pan_rad = *options.start_pan_deg * kRadPerDegree;
-  config.start_tilt_rad = options.start_tilt_deg * kRadPerDegree;
+  for (int axis = 0; axis < 3; ++axis) config.base.start_m[axis] = (*start_m)[axis];
+  config.base.start_pan_rad = scene.start_pan_rad.value_or(0.0);
+  if (options.start_pan_deg) config.base.start_pan_rad = *options.start_pan_deg * kRadPerDegree;
+  config.base.start_tilt_rad = options.start_tilt_deg * kRadPerDegree;
 }
 
 void fill_sensor(run_config_t& config, const RunOptions& options) {
@@ -76,40 +77,40 @@ void fill_sensor(run_config_t& config, const RunOptions& options) {
   }
   const TiltedLineScan sensor = TiltedLineScan::with_aperture(options.columns, options.rows,
                                                               options.aperture_deg * kRadPerDegree);
-  config.columns = sensor.columns;
-  config.rows = sensor.rows;
-  config.horizontal_aperture_rad = sensor.horizontal_aperture_rad;
-  config.vertical_aperture_rad = sensor.vertical_aperture_rad;
-  config.range_min_m = options.range.min_m;
-  config.range_max_m = options.range.max_m;
-  config.range_noise_m = options.range_noise_m;
-  config.scan_duration_s = options.scan_duration_s;
+  config.sensor.columns = sensor.columns;
+  config.sensor.rows = sensor.rows;
+  config.sensor.geometry_parameter[0] = sensor.horizontal_aperture_rad;
+  config.sensor.geometry_parameter[1] = sensor.vertical_aperture_rad;
+  config.sensor.range_min_m = options.range.min_m;
+  config.sensor.range_max_m = options.range.max_m;
+  config.sensor.range_noise_m = options.range_noise_m;
+  config.sensor.scan_duration_s = options.scan_duration_s;
 }
 
 void fill_base(run_config_t& config, const RunOptions& options, const Eigen::AlignedBox3d& bounds) {
   constexpr double kReach_m = 2.8;  // of the lift, above the lowest floor
-  config.body_radius_m = options.body_radius_m;
+  config.base.body_radius_m = options.body_radius_m;
   for (int axis = 0; axis < 3; ++axis) {
-    config.workspace_min_m[axis] = bounds.min()[axis];
-    config.workspace_max_m[axis] = bounds.max()[axis];
+    config.base.workspace_min_m[axis] = bounds.min()[axis];
+    config.base.workspace_max_m[axis] = bounds.max()[axis];
   }
   const double floor_m = bounds.min().z();
-  config.lift_min_m = options.lift_min_m.value_or(floor_m + options.body_radius_m);
-  config.lift_max_m = options.lift_max_m.value_or(
+  config.base.lift_min_m = options.lift_min_m.value_or(floor_m + options.body_radius_m);
+  config.base.lift_max_m = options.lift_max_m.value_or(
       std::min(bounds.max().z() - options.body_radius_m, floor_m + kReach_m));
-  if (config.lift_min_m >= config.lift_max_m) {
-    throw SetupError("the sensor's lowest height, " + two_decimals(config.lift_min_m) +
-                     " m, is not below its highest, " + two_decimals(config.lift_max_m) +
+  if (config.base.lift_min_m >= config.base.lift_max_m) {
+    throw SetupError("the sensor's lowest height, " + two_decimals(config.base.lift_min_m) +
+                     " m, is not below its highest, " + two_decimals(config.base.lift_max_m) +
                      " m: see --lift-min, --lift-max, --body-radius and --unit");
   }
-  config.base_speed_m_s = options.base_speed_m_s;
-  config.lift_speed_m_s = options.lift_speed_m_s;
-  config.turn_speed_rad_s = options.turn_speed_deg_s * kRadPerDegree;
+  config.base.base_speed_m_s = options.base_speed_m_s;
+  config.base.lift_speed_m_s = options.lift_speed_m_s;
+  config.base.turn_speed_rad_s = options.turn_speed_deg_s * kRadPerDegree;
 }
 
 void fill_map(run_config_t& config, const RunOptions& options, const Eigen::AlignedBox3d& bounds) {
   constexpr double kLargestSide = 4096.0;
-  config.voxel_size_m = options.voxel_size_m;
+  config.map.voxel_size_m = options.voxel_size_m;
   const double sides = bounds.sizes().maxCoeff() / options.voxel_size_m + 2 * options.margin_voxels;
   if (sides > kLargestSide - 2.0) {
     throw SetupError(
@@ -122,8 +123,8 @@ void fill_map(run_config_t& config, const RunOptions& options, const Eigen::Alig
   const VoxelIndex min = grid.voxel_of(bounds.min()) - margin;
   const VoxelIndex max = grid.voxel_of(bounds.max()) + margin;
   for (int axis = 0; axis < 3; ++axis) {
-    config.window_min[axis] = min[axis];
-    config.window_size[axis] = max[axis] - min[axis] + 1;
+    config.map.window_min[axis] = min[axis];
+    config.map.window_size[axis] = max[axis] - min[axis] + 1;
   }
   try {
     const VoxelMap fits(grid, window_of(config));
@@ -137,20 +138,21 @@ void fill_planner(run_config_t& config, const RunOptions& options) {
   if (options.step_min_m > options.step_max_m) {
     throw SetupError("--step-min must not be above --step-max");
   }
-  config.max_views = options.views.value_or(options.quality ? 300 : 60);
-  config.max_attempts = options.max_attempts;
-  config.use_quality = options.quality ? 1 : 0;
-  config.quality_threshold = options.quality_threshold;
-  config.clearance_m = options.clearance_m;
-  config.departure_m = options.departure_m;
-  config.directions = options.directions;
-  config.threads = options.threads;
-  config.step_min_m = options.step_min_m;
-  config.step_max_m = options.step_max_m;
-  config.fitness_tolerance = options.fitness_tolerance;
-  config.max_evaluations = options.max_evaluations;
-  config.stop_window_views = options.stop_window_views;
-  config.stop_new_area_m2 = options.stop_new_area_m2;
+  config.planner.max_views = options.views.value_or(options.quality ? 300 : 60);
+  config.planner.max_attempts = options.max_attempts;
+  config.planner.quality_weight = options.quality ? 1.0 : 0.0;
+  config.planner.stop_rule = options.quality ? 2 : 1;
+  config.planner.quality_threshold = options.quality_threshold;
+  config.planner.clearance_m = options.clearance_m;
+  config.planner.departure_m = options.departure_m;
+  config.planner.directions = options.directions;
+  config.planner.threads = options.threads;
+  config.planner.step_min_m = options.step_min_m;
+  config.planner.step_max_m = options.step_max_m;
+  config.planner.fitness_tolerance = options.fitness_tolerance;
+  config.planner.max_evaluations = options.max_evaluations;
+  config.planner.stop_window_views = options.stop_window_views;
+  config.planner.stop_new_area_m2 = options.stop_new_area_m2;
 }
 
 /// The start must be a place where the base can be, and at the planner's clearance, or nothing
@@ -163,10 +165,10 @@ void check_start(const run_config_t& config, const Scene& scene) {
     throw SetupError("--start: " + std::string(error.what()));
   }
   const double clearance_m =
-      scene.clearance_m(start.position_m, start.position_m, config.clearance_m);
-  if (clearance_m < config.clearance_m) {
+      scene.clearance_m(start.position_m, start.position_m, config.planner.clearance_m);
+  if (clearance_m < config.planner.clearance_m) {
     throw SetupError("--start: too near an obstacle, " + two_decimals(clearance_m) +
-                     " m where the planner keeps " + two_decimals(config.clearance_m) +
+                     " m where the planner keeps " + two_decimals(config.planner.clearance_m) +
                      " m: start elsewhere, or give a smaller --clearance");
   }
 }
@@ -184,10 +186,12 @@ RunSetup prepare_run(const RunOptions& options) {
   config.seed = options.seed;
   config.scene_name = description.name;
   config.scene_file = std::filesystem::absolute(description.file).lexically_normal().string();
-  config.unit_m = description.options.unit_m.value_or(0.0);
+  config.scene.unit_m = description.options.unit_m.value_or(0.0);
   if (description.options.up) config.scene_up = name_of(*description.options.up);
   config.scene_digest = mesh_digest(mesh);
-  config.program_version = NEXTVIEW_VERSION;
+  config.has_scene = 1;
+  config.program_version = program_version();
+  config.strategy = "paper";
   fill_start(config, options, description, bounds);
   fill_sensor(config, options);
   fill_base(config, options, bounds);
@@ -210,11 +214,11 @@ RunSetup prepare_run(const RunOptions& options) {
 
 ReachParameters reach_of(const run_config_t& config) {
   ReachParameters reach;
-  reach.clearance_m = config.clearance_m;
-  reach.box_min_m = Eigen::Vector3d(config.workspace_min_m);
-  reach.box_max_m = Eigen::Vector3d(config.workspace_max_m);
-  reach.box_min_m.z() = std::max(reach.box_min_m.z(), config.lift_min_m);
-  reach.box_max_m.z() = std::min(reach.box_max_m.z(), config.lift_max_m);
+  reach.clearance_m = config.planner.clearance_m;
+  reach.box_min_m = Eigen::Vector3d(config.base.workspace_min_m);
+  reach.box_max_m = Eigen::Vector3d(config.base.workspace_max_m);
+  reach.box_min_m.z() = std::max(reach.box_min_m.z(), config.base.lift_min_m);
+  reach.box_max_m.z() = std::min(reach.box_max_m.z(), config.base.lift_max_m);
   return reach;
 }
 

@@ -6,8 +6,9 @@
 namespace nextview {
 
 Scene load_scene(const run_config_t& config) {
+  if (config.has_scene == 0) throw SceneError("the run has no scene to simulate");
   SceneOptions options;
-  if (config.unit_m > 0.0) options.unit_m = config.unit_m;
+  if (config.scene.unit_m > 0.0) options.unit_m = config.scene.unit_m;
   if (!config.scene_up.empty()) options.up = parse_up_axis(config.scene_up);
   TriangleMesh mesh = load_mesh(config.scene_file, options);
   const std::string digest = mesh_digest(mesh);

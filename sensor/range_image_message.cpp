@@ -1,27 +1,26 @@
 #include "sensor/range_image_message.h"
 
+#include <xxhash.h>
+
 #include <algorithm>
-#include <string>
+#include <cstdio>
+#include <stdexcept>
+
+#include "lcmtypes/decode.h"
 
 namespace nextview {
 namespace {
 
-/// 48 KB of ranges; fewer where a large ray table needs the room.
-constexpr std::size_t kPixelsPerPart = 12 * 1024;
+constexpr std::size_t kEntryBytes = 2 * sizeof(double);
 
-range_image_t describe(const RangeImage& image, int view, int attempt, std::int64_t utime,
-                       double scan_wall_s) {
+range_image_t describe(const RangeImage& image, int view, int attempt, std::int64_t utime) {
   range_image_t message{};
   message.utime = utime;
-  message.columns = image.rays.columns();
-  message.rows = image.rays.rows();
   message.view = view;
   message.attempt = attempt;
   message.geometry = 0;
-  message.column_sin = image.rays.column_sin;
-  message.column_cos = image.rays.column_cos;
-  message.row_sin = image.rays.row_sin;
-  message.row_cos = image.rays.row_cos;
+  message.columns = image.rays.columns();
+  message.rows = image.rays.rows();
   message.range_min_m = image.limits.min_m;
   message.range_max_m = image.limits.max_m;
   message.pan_rad = image.pose.pan_rad;
@@ -32,96 +31,169 @@ range_image_t describe(const RangeImage& image, int view, int attempt, std::int6
       message.world_from_sensor[row][column] = image.world_from_sensor(row, column);
     }
   }
-  message.scan_wall_s = scan_wall_s;
   return message;
 }
 
-/// Whether two parts are of the same image: everything but the pixels is the same.
+/// Whether two parts are of the same image: all that is said of the whole is the same.
 bool same_image(const range_image_t& a, const range_image_t& b) {
   return a.utime == b.utime && a.columns == b.columns && a.rows == b.rows && a.parts == b.parts &&
-         a.geometry == b.geometry && a.column_sin == b.column_sin && a.column_cos == b.column_cos &&
-         a.row_sin == b.row_sin && a.row_cos == b.row_cos && a.range_min_m == b.range_min_m &&
+         a.geometry == b.geometry && a.range_min_m == b.range_min_m &&
          a.range_max_m == b.range_max_m && std::ranges::equal(a.position_m, b.position_m) &&
          a.pan_rad == b.pan_rad && a.tilt_rad == b.tilt_rad &&
          std::ranges::equal(a.world_from_sensor, b.world_from_sensor,
                             [](const auto& p, const auto& q) { return std::ranges::equal(p, q); });
 }
 
-ReceivedRangeImage received_image(const range_image_t& message, std::vector<float> range_m) {
+/// Where a part's slice begins and ends in the sequence of entries and pixels.
+std::int64_t begin_of(const range_image_t& part) {
+  if (part.entries > 0) return part.first_entry;
+  return std::int64_t{part.columns} + part.rows + part.first_pixel;
+}
+std::int64_t end_of(const range_image_t& part) {
+  return begin_of(part) + part.entries + part.pixels;
+}
+
+/// Whether two parts can be of one sequence, the first one before the second.
+bool in_order(const range_image_t& before, const range_image_t& after) {
+  const bool neighbours = before.part + 1 == after.part;
+  return neighbours ? end_of(before) == begin_of(after) : end_of(before) < begin_of(after);
+}
+
+template <class T>
+void append(std::vector<T>& to, const std::vector<T>& from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+/// The rays of a table's entries: those of the columns, then those of the rows.
+RayTable rays_of(const std::vector<double>& sines, const std::vector<double>& cosines,
+                 int columns) {
+  return {{sines.begin(), sines.begin() + columns},
+          {cosines.begin(), cosines.begin() + columns},
+          {sines.begin() + columns, sines.end()},
+          {cosines.begin() + columns, cosines.end()}};
+}
+
+ReceivedRangeImage join(const std::map<int, range_image_t>& parts) {
+  const range_image_t& first = parts.begin()->second;
   ReceivedRangeImage received;
-  received.view = message.view;
-  received.attempt = message.attempt;
-  received.utime = message.utime;
+  received.view = first.view;
+  received.attempt = first.attempt;
+  received.utime = first.utime;
   RangeImage& image = received.image;
   for (int row = 0; row < 3; ++row) {
-    image.position_m[row] = message.position_m[row];
+    image.position_m[row] = first.position_m[row];
     for (int column = 0; column < 3; ++column) {
-      image.world_from_sensor(row, column) = message.world_from_sensor[row][column];
+      image.world_from_sensor(row, column) = first.world_from_sensor[row][column];
     }
   }
-  image.pose = {image.position_m, message.pan_rad, message.tilt_rad};
-  image.rays = {message.column_sin, message.column_cos, message.row_sin, message.row_cos};
-  image.limits = {message.range_min_m, message.range_max_m};
-  image.range_m = std::move(range_m);
+  image.pose = {image.position_m, first.pan_rad, first.tilt_rad};
+  image.limits = {first.range_min_m, first.range_max_m};
+  image.range_m.reserve(static_cast<std::size_t>(first.columns) *
+                        static_cast<std::size_t>(first.rows));
+  std::vector<double> sines;
+  std::vector<double> cosines;
+  for (const auto& [number, part] : parts) {
+    append(sines, part.entry_sin);
+    append(cosines, part.entry_cos);
+    append(image.range_m, part.range_m);
+  }
+  image.rays = rays_of(sines, cosines, first.columns);
   return received;
+}
+
+Hash128 hash_of(range_image_t part) {
+  part.run = 0;
+  const std::vector<std::uint8_t> bytes = encode(part);
+  const XXH128_hash_t hash = XXH3_128bits(bytes.data(), bytes.size());
+  return {hash.high64, hash.low64};
+}
+
+std::string hexadecimal(const XXH128_hash_t& hash) {
+  char text[33];
+  std::snprintf(text, sizeof text, "%016llx%016llx", static_cast<unsigned long long>(hash.high64),
+                static_cast<unsigned long long>(hash.low64));
+  return text;
 }
 
 }  // namespace
 
 std::vector<range_image_t> range_image_messages(const RangeImage& image, int view, int attempt,
-                                                std::int64_t utime, double scan_wall_s) {
-  const range_image_t description = describe(image, view, attempt, utime, scan_wall_s);
-  const auto described = static_cast<std::size_t>(description.getEncodedSize());
-  const std::size_t per_part =
-      std::clamp((kMaxMessageBytes - std::min(described, kMaxMessageBytes)) / sizeof(float),
-                 std::size_t{1}, kPixelsPerPart);
-  const std::size_t all = image.range_m.size();
-  const std::size_t parts = (all + per_part - 1) / per_part;
+                                                std::int64_t utime, std::size_t part_bytes) {
+  if (part_bytes < kEntryBytes || part_bytes > kPartBytes) {
+    throw std::invalid_argument("a part of a range image carries " + std::to_string(kEntryBytes) +
+                                " to " + std::to_string(kPartBytes) + " bytes, not " +
+                                std::to_string(part_bytes));
+  }
+  std::vector<double> sines = image.rays.column_sin;
+  append(sines, image.rays.row_sin);
+  std::vector<double> cosines = image.rays.column_cos;
+  append(cosines, image.rays.row_cos);
 
-  std::vector<range_image_t> messages(parts, description);
-  for (std::size_t part = 0; part < parts; ++part) {
-    const std::size_t first = part * per_part;
-    const auto ranges = std::span(image.range_m).subspan(first, std::min(per_part, all - first));
-    range_image_t& message = messages[part];
-    message.part = static_cast<std::int32_t>(part);
-    message.parts = static_cast<std::int32_t>(parts);
-    message.first_pixel = static_cast<std::int32_t>(first);
-    message.pixels = static_cast<std::int32_t>(ranges.size());
-    message.range_m.assign(ranges.begin(), ranges.end());
+  const range_image_t description = describe(image, view, attempt, utime);
+  std::vector<range_image_t> messages;
+  std::size_t entry = 0;
+  std::size_t pixel = 0;
+  while (pixel < image.range_m.size()) {
+    const std::size_t entries = std::min(part_bytes / kEntryBytes, sines.size() - entry);
+    const std::size_t room =
+        entry + entries < sines.size() ? 0 : part_bytes - entries * kEntryBytes;
+    const std::size_t pixels = std::min(room / sizeof(float), image.range_m.size() - pixel);
+    range_image_t& message = messages.emplace_back(description);
+    message.part = static_cast<std::int32_t>(messages.size()) - 1;
+    message.first_entry = static_cast<std::int32_t>(entry);
+    message.entries = static_cast<std::int32_t>(entries);
+    const auto entry_end = static_cast<std::ptrdiff_t>(entry + entries);
+    message.entry_sin.assign(sines.begin() + static_cast<std::ptrdiff_t>(entry),
+                             sines.begin() + entry_end);
+    message.entry_cos.assign(cosines.begin() + static_cast<std::ptrdiff_t>(entry),
+                             cosines.begin() + entry_end);
+    message.first_pixel = static_cast<std::int32_t>(pixel);
+    message.pixels = static_cast<std::int32_t>(pixels);
+    const auto first = image.range_m.begin() + static_cast<std::ptrdiff_t>(pixel);
+    message.range_m.assign(first, first + static_cast<std::ptrdiff_t>(pixels));
+    entry += entries;
+    pixel += pixels;
+  }
+  for (range_image_t& message : messages) {
+    message.parts = static_cast<std::int32_t>(messages.size());
   }
   return messages;
 }
 
+std::string history_digest(const std::string& previous, const ReceivedRangeImage& received) {
+  std::string bytes = previous;
+  const auto put = [&bytes](std::uint64_t value) {  // big-endian, as XXH128_canonical_t
+    for (int shift = 56; shift >= 0; shift -= 8) bytes += static_cast<char>(value >> shift & 0xffU);
+  };
+  for (const auto& [high, low] : received.part_hashes) {
+    put(high);
+    put(low);
+  }
+  return hexadecimal(XXH3_128bits(bytes.data(), bytes.size()));
+}
+
 std::optional<ReceivedRangeImage> RangeImageAssembler::add(const range_image_t& part) {
   const MessageKey key{part.view, part.attempt, 0};
-  const auto [entry, is_new] = assemblies_.try_emplace(key);
-  Assembly& assembly = entry->second;
-  if (is_new) {
-    const auto pixels =
-        static_cast<std::size_t>(part.columns) * static_cast<std::size_t>(part.rows);
-    assembly.description = part;
-    assembly.description.range_m.clear();
-    assembly.range_m.resize(pixels);
-    assembly.filled.resize(pixels);
-    assembly.missing_pixels = static_cast<std::int64_t>(pixels);
-  }
-  if (!same_image(part, assembly.description)) {
+  Assembly& assembly = assemblies_[key];
+  std::map<int, range_image_t>& parts = assembly.parts;
+  if (!parts.empty() && !same_image(part, parts.begin()->second)) {
     throw RejectedMessage("a part that is not of the same image as the parts before it");
   }
-  if (assembly.parts.contains(part.part)) return std::nullopt;
-  const auto first = assembly.filled.begin() + part.first_pixel;
-  if (std::find(first, first + part.pixels, true) != first + part.pixels) {
-    throw RejectedMessage("a part whose pixels another part has");
+  if (parts.contains(part.part)) return std::nullopt;
+  const auto after = parts.upper_bound(part.part);
+  if ((after != parts.end() && !in_order(part, after->second)) ||
+      (after != parts.begin() && !in_order(std::prev(after)->second, part))) {
+    throw RejectedMessage("a part that overlaps another part or leaves a gap to it");
   }
 
-  assembly.parts.insert(part.part);
-  std::fill_n(first, part.pixels, true);
-  std::ranges::copy(part.range_m, assembly.range_m.begin() + part.first_pixel);
-  assembly.missing_pixels -= part.pixels;
-  if (assembly.missing_pixels > 0) return std::nullopt;
+  parts.emplace_hint(after, part.part, part);
+  assembly.hashes.emplace(part.part, hash_of(part));
+  if (std::ssize(parts) < part.parts) return std::nullopt;
 
-  ReceivedRangeImage received = received_image(assembly.description, std::move(assembly.range_m));
-  assemblies_.erase(entry);
+  // Neighbours meet, and check() has seen that the ends are at the ends.
+  ReceivedRangeImage received = join(parts);
+  for (const auto& [number, hash] : assembly.hashes) received.part_hashes.push_back(hash);
+  assemblies_.erase(key);
   return received;
 }
 

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <optional>
-#include <set>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "lcmtypes/bus.h"
@@ -11,11 +13,19 @@
 
 namespace nextview {
 
+/// How much of an image a part carries unless told otherwise, bytes of ray table and ranges.
+constexpr std::size_t kPartBytes = 48 * 1024;
+
 /// A range image as it travels: one message, or several parts when it is large.
 /// @param utime simulated time of the scan, us
-/// @param scan_wall_s how long the scan took, for people
+/// @param part_bytes of ray table and ranges a part carries at most
+/// @throws std::invalid_argument unless part_bytes is 16 to kPartBytes
 std::vector<range_image_t> range_image_messages(const RangeImage& image, int view, int attempt,
-                                                std::int64_t utime, double scan_wall_s);
+                                                std::int64_t utime,
+                                                std::size_t part_bytes = kPartBytes);
+
+/// A 128-bit hash, XXH3's.
+using Hash128 = std::pair<std::uint64_t, std::uint64_t>;
 
 /// A whole range image that came over the bus or out of a log.
 struct ReceivedRangeImage {
@@ -23,9 +33,15 @@ struct ReceivedRangeImage {
   int attempt = 0;
   std::int64_t utime = 0;
   RangeImage image;
+  std::vector<Hash128> part_hashes;  ///< of the parts as they travel, with run 0, in part order
 };
 
-/// Puts range images together from their parts, which may come in any order.
+/// The history of a run's range images up to this one; see commit_t::history_digest.
+/// @param previous of the view before; empty for view 1
+std::string history_digest(const std::string& previous, const ReceivedRangeImage& received);
+
+/// Puts range images together from their parts, which may come in any order. Holds no more than it
+/// has been given, whatever sizes the parts announce.
 class RangeImageAssembler {
  public:
   /// Takes a part that has passed check(); a part that is there already is ignored.
@@ -35,11 +51,8 @@ class RangeImageAssembler {
 
  private:
   struct Assembly {
-    range_image_t description;  // the first part that came, without its ranges
-    std::vector<float> range_m;
-    std::vector<bool> filled;
-    std::int64_t missing_pixels;
-    std::set<int> parts;
+    std::map<int, range_image_t> parts;
+    std::map<int, Hash128> hashes;
   };
   std::map<MessageKey, Assembly> assemblies_;  // by view and attempt
 };

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <utility>
 
+#include "lcmtypes/timing_message.h"
 #include "scene/scene_config.h"
 #include "sensor/range_image_message.h"
 #include "sensor/sensor_config.h"
@@ -25,19 +26,26 @@ bool SensorSimProcess::step() {
   const arrival_t arrival = to_scan_.front();
   to_scan_.pop_front();
 
-  const SensorPose pose{Eigen::Vector3d(arrival.arrival_position_m), arrival.pan_rad,
-                        arrival.tilt_rad};
+  const SensorPose pose{Eigen::Vector3d(arrival.true_position_m), arrival.true_pan_rad,
+                        arrival.true_tilt_rad};
   const auto start = std::chrono::steady_clock::now();
   RandomStream noise(config_.seed, arrival.view, arrival.attempt, RandomPurpose::RangeNoise);
-  const RangeImage image =
-      scan(scene_, rays_, range_limits_of(config_), pose, config_.range_noise_m, noise);
+  RangeImage image =
+      scan(scene_, rays_, range_limits_of(config_), pose, config_.sensor.range_noise_m, noise);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
 
-  const std::int64_t utime = arrival.utime + std::llround(config_.scan_duration_s * 1e6);
-  for (range_image_t& message :
-       range_image_messages(image, arrival.view, arrival.attempt, utime, wall.count())) {
+  // What is seen is seen from where the sensor is, and placed where it takes itself to be.
+  image.pose = {Eigen::Vector3d(arrival.believed_position_m), arrival.believed_pan_rad,
+                arrival.believed_tilt_rad};
+  image.position_m = image.pose.position_m;
+  image.world_from_sensor = world_from_sensor_rotation(image.pose.pan_rad, image.pose.tilt_rad);
+
+  const std::int64_t utime = arrival.utime + std::llround(config_.sensor.scan_duration_s * 1e6);
+  for (range_image_t& message : range_image_messages(image, arrival.view, arrival.attempt, utime)) {
     bus_.publish(std::move(message));
   }
+  bus_.publish(
+      timing_message(bus_.role(), utime, arrival.view, arrival.attempt, {{"scan", wall.count()}}));
   return true;
 }
 

@@ -55,8 +55,8 @@ TEST_F(BusPair, AnswersRequestsWithTheSameBytesAsOftenAsAsked) {
   ASSERT_EQ(goals.size(), 4U);
   for (const auto& bytes : goals) EXPECT_EQ(bytes, goals[0]);
   EXPECT_EQ(received, 1);
-  EXPECT_EQ(mapper_.counters().duplicates, 3);
-  EXPECT_EQ(planner_.counters().answered, 3);
+  EXPECT_EQ(mapper_.counters().repeated, 3);
+  EXPECT_EQ(planner_.counters().lost, 3);
 }
 
 TEST_F(BusPair, AnswersWithAllAttemptsAndAllPartsWhenAskedForAnyAttempt) {
@@ -70,14 +70,14 @@ TEST_F(BusPair, AnswersWithAllAttemptsAndAllPartsWhenAskedForAnyAttempt) {
   }
   mapper_.request<goal_t>(2, 0);
   settle();
-  EXPECT_EQ(planner_.counters().answered, 2);
+  EXPECT_EQ(planner_.counters().lost, 2);
   mapper_.request<goal_t>(2, 2);
   settle();
-  EXPECT_EQ(planner_.counters().answered, 3);
+  EXPECT_EQ(planner_.counters().lost, 3);
   mapper_.request<goal_t>(2, 3);
   mapper_.request<goal_t>(4, 0);
   settle();
-  EXPECT_EQ(planner_.counters().answered, 3);
+  EXPECT_EQ(planner_.counters().lost, 3);
 }
 
 TEST_F(BusPair, HandsARequestNothingAnswersToTheProcess) {
@@ -103,7 +103,7 @@ TEST_F(BusPair, StatusMessagesAreAlwaysFresh) {
   settle();
   EXPECT_EQ(received, 2);
   EXPECT_EQ(asked, 1);
-  EXPECT_EQ(mapper_.counters().duplicates, 0);
+  EXPECT_EQ(mapper_.counters().repeated, 0);
 }
 
 TEST_F(BusPair, IgnoresAndCountsOtherRuns) {
@@ -114,8 +114,8 @@ TEST_F(BusPair, IgnoresAndCountsOtherRuns) {
   stranger.request<goal_t>(2, 1);
   settle();
   EXPECT_EQ(received, 0);
-  EXPECT_EQ(mapper_.counters().strangers, 2);
-  EXPECT_EQ(mapper_.counters().dropped, 0);
+  EXPECT_EQ(mapper_.counters().foreign, 2);
+  EXPECT_EQ(mapper_.counters().refused, 0);
 }
 
 TEST_F(BusPair, DropsWhatCannotBeRightWithALineAndTakesTheRightOneAfterwards) {
@@ -133,8 +133,8 @@ TEST_F(BusPair, DropsWhatCannotBeRightWithALineAndTakesTheRightOneAfterwards) {
   EXPECT_NE(lines.find("mapper: dropped a message on NEXTVIEW_GOAL: position_m"), std::string::npos)
       << lines;
   EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), 4) << lines;  // the request twice
-  EXPECT_EQ(mapper_.counters().dropped, 3);
-  EXPECT_EQ(planner_.counters().dropped, 1);
+  EXPECT_EQ(mapper_.counters().refused, 3);
+  EXPECT_EQ(planner_.counters().refused, 1);
   EXPECT_EQ(received, 0);
   planner_.publish(example<goal_t>());
   settle();
@@ -153,7 +153,7 @@ TEST_F(BusPair, AHandlerMayRejectAMessageAndIsGivenItAgain) {
   EXPECT_NE(testing::internal::GetCapturedStderr().find("NEXTVIEW_GOAL: view 2 of a run of 1"),
             std::string::npos);
   EXPECT_EQ(calls, 2);
-  EXPECT_EQ(mapper_.counters().dropped, 1);
+  EXPECT_EQ(mapper_.counters().refused, 1);
   EXPECT_EQ(mapper_.counters().delivered, 1);
 }
 
@@ -206,7 +206,7 @@ TEST_F(LossyBusPair, LosesNothingForWhoeverAsksAgain) {
     }
   }
   EXPECT_EQ(mapper_.counters().delivered, kGoals);
-  EXPECT_GT(mapper_.counters().duplicates, 0);
+  EXPECT_GT(mapper_.counters().repeated, 0);
   EXPECT_GT(network_.lost(), kGoals / 2);
 }
 

@@ -13,44 +13,47 @@ run_config_t example() {
   run_config_t config{};
   config.run = 7;
   config.seed = 3;
-  config.unit_m = 1.0;
-  config.start_m[2] = 1.2;
-  config.columns = 4;
-  config.rows = 3;
-  config.horizontal_aperture_rad = 1.0;
-  config.vertical_aperture_rad = 0.7;
-  config.range_min_m = 0.05;
-  config.range_max_m = 30.0;
-  config.scan_duration_s = 1.0;
-  config.body_radius_m = 0.2;
+  config.scene.unit_m = 1.0;
+  config.base.start_m[2] = 1.2;
+  config.has_scene = 1;
+  config.sensor.columns = 4;
+  config.sensor.rows = 3;
+  config.sensor.geometry_parameter[0] = 1.0;
+  config.sensor.geometry_parameter[1] = 0.7;
+  config.sensor.range_min_m = 0.05;
+  config.sensor.range_max_m = 30.0;
+  config.sensor.scan_duration_s = 1.0;
+  config.base.body_radius_m = 0.2;
   for (int axis = 0; axis < 3; ++axis) {
-    config.workspace_min_m[axis] = -2.0;
-    config.workspace_max_m[axis] = 3.0;
-    config.window_size[axis] = 16;
+    config.base.workspace_min_m[axis] = -2.0;
+    config.base.workspace_max_m[axis] = 3.0;
+    config.map.window_size[axis] = 16;
   }
-  config.lift_min_m = 0.3;
-  config.lift_max_m = 2.0;
-  config.base_speed_m_s = 0.5;
-  config.lift_speed_m_s = 0.2;
-  config.turn_speed_rad_s = 0.7;
-  config.voxel_size_m = 0.1;
-  config.max_views = 60;
-  config.max_attempts = 20;
-  config.quality_threshold = 0.8;
-  config.clearance_m = 0.4;
-  config.departure_m = 0.8;
-  config.directions = 20;
-  config.threads = 1;
-  config.step_min_m = 0.3;
-  config.step_max_m = 1.5;
-  config.fitness_tolerance = 0.01;
-  config.max_evaluations = 70;
-  config.stop_window_views = 15;
-  config.stop_new_area_m2 = 0.1;
+  config.base.lift_min_m = 0.3;
+  config.base.lift_max_m = 2.0;
+  config.base.base_speed_m_s = 0.5;
+  config.base.lift_speed_m_s = 0.2;
+  config.base.turn_speed_rad_s = 0.7;
+  config.map.voxel_size_m = 0.1;
+  config.planner.stop_rule = 1;
+  config.planner.max_views = 60;
+  config.planner.max_attempts = 20;
+  config.planner.quality_threshold = 0.8;
+  config.planner.clearance_m = 0.4;
+  config.planner.departure_m = 0.8;
+  config.planner.directions = 20;
+  config.planner.threads = 1;
+  config.planner.step_min_m = 0.3;
+  config.planner.step_max_m = 1.5;
+  config.planner.fitness_tolerance = 0.01;
+  config.planner.max_evaluations = 70;
+  config.planner.stop_window_views = 15;
+  config.planner.stop_new_area_m2 = 0.1;
   config.scene_name = "room"s;
   config.scene_file = "room.obj"s;
   config.scene_up = "z"s;
   config.scene_digest = "0123456789abcdef0123456789abcdef"s;
+  config.strategy = "paper"s;
   config.program_version = "0.1"s;
   return config;
 }
@@ -68,6 +71,12 @@ goal_t example() {
   goal.fitness = 0.9;
   goal.share_occupied = 0.5;
   goal.share_unseen = 0.5;
+  goal.path_length_m = 1.0;
+  goal.factors = 2;
+  goal.factor_value = {0.25, 0.0};
+  goal.factor_names = "quality,structure"s;
+  goal.strategy = "paper"s;
+  goal.reason = "the best of 9 positions"s;
   return goal;
 }
 
@@ -104,15 +113,16 @@ range_image_t example() {
   image.attempt = 1;
   image.columns = 3;
   image.rows = 2;
+  image.entries = 5;
   image.pixels = 6;
   image.parts = 1;
   for (int i = 0; i < 3; ++i) {
-    image.column_sin.push_back(std::sin(0.1 * i));
-    image.column_cos.push_back(std::cos(0.1 * i));
+    image.entry_sin.push_back(std::sin(0.1 * i));
+    image.entry_cos.push_back(std::cos(0.1 * i));
     image.world_from_sensor[i][i] = 1.0;
   }
-  image.row_sin = {0.0, 0.6};
-  image.row_cos = {1.0, 0.8};
+  image.entry_sin.insert(image.entry_sin.end(), {0.0, 0.6});
+  image.entry_cos.insert(image.entry_cos.end(), {1.0, 0.8});
   image.range_min_m = 0.05;
   image.range_max_m = 30.0;
   image.range_m = {
@@ -132,6 +142,7 @@ commit_t example() {
   commit.mean_quality = 0.7;
   commit.min_quality = 0.1;
   commit.map_digest = "0123456789abcdef0123456789abcdef"s;
+  commit.history_digest = "fedcba9876543210fedcba9876543210"s;
   return commit;
 }
 
@@ -149,6 +160,7 @@ status_t example() {
   status_t status{};
   status.run = 7;
   status.role = "mapper"s;
+  status.program_version = "0.1"s;
   return status;
 }
 
@@ -160,6 +172,19 @@ request_t example() {
   request.wanted_channel = "NEXTVIEW_GOAL"s;
   request.asker = "mapper"s;
   return request;
+}
+
+template <>
+timing_t example() {
+  timing_t timing{};
+  timing.run = 7;
+  timing.view = 2;
+  timing.attempt = 1;
+  timing.durations = 2;
+  timing.duration_s = {0.002, 0.0001};
+  timing.role = "mapper"s;
+  timing.duration_names = "update,digest"s;
+  return timing;
 }
 
 }  // namespace nextview

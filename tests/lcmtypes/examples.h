@@ -26,5 +26,7 @@ template <>
 status_t example();
 template <>
 request_t example();
+template <>
+timing_t example();
 
 }  // namespace nextview

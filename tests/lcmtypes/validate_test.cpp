@@ -50,7 +50,16 @@ TEST(Validate, Goal) {
       {"share above 1", [](goal_t& m) { m.share_unseen = 1.01; }},
       {"negative share", [](goal_t& m) { m.share_open = -0.01; }},
       {"negative iterations", [](goal_t& m) { m.iterations = -1; }},
-      {"NaN time", [](goal_t& m) { m.plan_wall_s = kNan; }},
+      {"negative path", [](goal_t& m) { m.path_length_m = -1.0; }},
+      {"factor above 1", [](goal_t& m) { m.factor_value[1] = 1.5; }},
+      {"NaN factor", [](goal_t& m) { m.factor_value[0] = kNan; }},
+      {"fewer names than factors", [](goal_t& m) { m.factor_names = "quality"; }},
+      {"more names than factors", [](goal_t& m) { m.factor_names += ",navigation"; }},
+      {"a factor without a name", [](goal_t& m) { m.factor_names = "quality,"; }},
+      {"a name of two words", [](goal_t& m) { m.factor_names = "quality,my structure"; }},
+      {"no strategy", [](goal_t& m) { m.strategy.clear(); }},
+      {"negative gain", [](goal_t& m) { m.expected_gain_m2 = -0.5; }},
+      {"overlap above 1", [](goal_t& m) { m.overlap = 1.5; }},
   });
 }
 
@@ -60,7 +69,7 @@ TEST(Validate, Search) {
       {"NaN position", [](search_t& m) { m.tried_position_m[1][0] = kNan; }},
       {"infinite fitness", [](search_t& m) { m.tried_fitness[0] = -kInf; }},
       {"NaN pan", [](search_t& m) { m.tried_pan_rad[0] = kNan; }},
-      {"unknown move", [](search_t& m) { m.tried_move[0] = 6; }},
+      {"unknown move", [](search_t& m) { m.tried_move[0] = 16; }},
       {"negative move", [](search_t& m) { m.tried_move[0] = -1; }},
   });
 }
@@ -71,7 +80,10 @@ TEST(Validate, Arrival) {
       {"both arrived and refused", [](arrival_t& m) { m.arrived = 1; }},
       {"neither", [](arrival_t& m) { m.refusal.clear(); }},
       {"a boolean of 2", [](arrival_t& m) { m.arrived = 2; }},
-      {"NaN position", [](arrival_t& m) { m.arrival_position_m[0] = kNan; }},
+      {"NaN true position", [](arrival_t& m) { m.true_position_m[0] = kNan; }},
+      {"NaN believed position", [](arrival_t& m) { m.believed_position_m[2] = kNan; }},
+      {"NaN true pan", [](arrival_t& m) { m.true_pan_rad = kNan; }},
+      {"believed tilt beyond the vertical", [](arrival_t& m) { m.believed_tilt_rad = 1.6; }},
       {"negative path", [](arrival_t& m) { m.path_length_m = -0.1; }},
   });
 }
@@ -82,6 +94,24 @@ TEST(Validate, RangeImage) {
       {"unknown geometry", [](range_image_t& m) { m.geometry = 1; }},
       {"one column", [](range_image_t& m) { m.columns = 1; }},
       {"rows without end", [](range_image_t& m) { m.rows = 1 << 20; }},
+      {"more entries than the raster", [](range_image_t& m) { m.first_entry = 1; }},
+      {"negative first entry", [](range_image_t& m) { m.first_entry = -1; }},
+      {"entries that leave a gap to the pixels", [](range_image_t& m) { m.entries = 4; }},
+      {"entries without the pixels that end the image", [](range_image_t& m) { m.pixels = 0; }},
+      {"nothing in it",
+       [](range_image_t& m) {
+         m.parts = 3;
+         m.part = 1;
+         m.first_entry = 5;
+         m.entries = m.pixels = 0;
+       }},
+      {"pixels in the midst of the image right behind its entries",
+       [](range_image_t& m) {
+         m.parts = 2;
+         m.part = 0;
+         m.first_pixel = 1;
+         m.pixels = 3;
+       }},
       {"more pixels than the raster", [](range_image_t& m) { m.first_pixel = 1; }},
       {"negative first pixel", [](range_image_t& m) { m.first_pixel = -1; }},
       {"first pixel whose sum overflows",
@@ -91,14 +121,14 @@ TEST(Validate, RangeImage) {
       {"part beyond parts", [](range_image_t& m) { m.part = 1; }},
       {"negative part", [](range_image_t& m) { m.part = -1; }},
       {"no parts", [](range_image_t& m) { m.parts = 0; }},
-      {"more parts than pixels", [](range_image_t& m) { m.parts = 7; }},
-      {"second part from the first pixel",
+      {"more parts than entries and pixels", [](range_image_t& m) { m.parts = 12; }},
+      {"second part from the first entry",
        [](range_image_t& m) {
          m.parts = 3;
          m.part = 1;
        }},
-      {"column off the unit circle", [](range_image_t& m) { m.column_sin[1] += 1e-6; }},
-      {"NaN row", [](range_image_t& m) { m.row_cos[0] = kNan; }},
+      {"column off the unit circle", [](range_image_t& m) { m.entry_sin[1] += 1e-4; }},
+      {"NaN row", [](range_image_t& m) { m.entry_cos[3] = kNan; }},
       {"limits the wrong way round", [](range_image_t& m) { m.range_min_m = 31.0; }},
       {"negative limit", [](range_image_t& m) { m.range_min_m = -1.0; }},
       {"infinite limit", [](range_image_t& m) { m.range_max_m = kInf; }},
@@ -117,8 +147,9 @@ TEST(Validate, RangesWhereverTheyStand) {
   auto image = example<range_image_t>();
   image.rows = 20;
   image.pixels = 60;
-  image.row_sin.assign(20, 0.0);
-  image.row_cos.assign(20, 1.0);
+  image.entries = 23;
+  image.entry_sin.assign(23, 0.0);
+  image.entry_cos.assign(23, 1.0);
   image.range_m.assign(60, kInfF);
   ASSERT_EQ(check(image), "");
   for (float& range_m : image.range_m) {
@@ -145,6 +176,7 @@ TEST(Validate, Commit) {
       {"NaN quality", [](commit_t& m) { m.min_quality = kNan; }},
       {"short digest", [](commit_t& m) { m.map_digest.pop_back(); }},
       {"digest with another letter", [](commit_t& m) { m.map_digest[3] = 'g'; }},
+      {"no history", [](commit_t& m) { m.history_digest.clear(); }},
       {"NaN position", [](commit_t& m) { m.used_position_m[0] = kNan; }},
   });
 }
@@ -155,9 +187,10 @@ TEST(Validate, TheRest) {
       {"no reason", [](stop_t& m) { m.stop_reason.clear(); }},
   });
   expect_all_refused<status_t>({
-      {"negative counter", [](status_t& m) { m.dropped = -1; }},
+      {"negative counter", [](status_t& m) { m.refused = -1; }},
       {"a boolean of -1", [](status_t& m) { m.failed = -1; }},
       {"no role", [](status_t& m) { m.role.clear(); }},
+      {"no version", [](status_t& m) { m.program_version.clear(); }},
   });
   expect_all_refused<request_t>({
       {"negative view", [](request_t& m) { m.view = -1; }},
@@ -167,32 +200,78 @@ TEST(Validate, TheRest) {
   });
 }
 
+TEST(Validate, Timing) {
+  expect_all_refused<timing_t>({
+      {"negative utime", [](timing_t& m) { m.utime = -1; }},
+      {"view 0", [](timing_t& m) { m.view = 0; }},
+      {"negative attempt", [](timing_t& m) { m.attempt = -1; }},
+      {"negative duration", [](timing_t& m) { m.duration_s[1] = -1.0; }},
+      {"infinite duration", [](timing_t& m) { m.duration_s[0] = kInf; }},
+      {"fewer names than durations", [](timing_t& m) { m.duration_names = "update"; }},
+      {"no role", [](timing_t& m) { m.role.clear(); }},
+  });
+}
+
+TEST(Validate, NamesOfAList) {
+  EXPECT_EQ(names_of(""), std::vector<std::string_view>{});
+  EXPECT_EQ(names_of("a"), std::vector<std::string_view>{"a"});
+  EXPECT_EQ(names_of("a,bc,"), (std::vector<std::string_view>{"a", "bc", ""}));
+}
+
+TEST(Validate, ARunWithoutAScene) {
+  auto config = example<run_config_t>();
+  config.has_scene = 0;
+  EXPECT_NE(check(config), "") << "a file and a digest of no scene";
+  config.scene_file.clear();
+  EXPECT_NE(check(config), "") << "a digest of no scene";
+  config.scene_digest.clear();
+  EXPECT_EQ(check(config), "");
+}
+
 TEST(Validate, RunConfig) {
   expect_all_refused<run_config_t>({
       {"utime", [](run_config_t& m) { m.utime = 1; }},
-      {"negative unit", [](run_config_t& m) { m.unit_m = -1.0; }},
-      {"NaN start", [](run_config_t& m) { m.start_m[0] = kNan; }},
-      {"tilted over", [](run_config_t& m) { m.start_tilt_rad = 2.0; }},
-      {"no columns", [](run_config_t& m) { m.columns = 0; }},
-      {"huge rows", [](run_config_t& m) { m.rows = 1 << 20; }},
-      {"a raster whose ray table fills the messages",
-       [](run_config_t& m) { m.columns = m.rows = 1000; }},
-      {"aperture of a half turn", [](run_config_t& m) { m.vertical_aperture_rad = 3.2; }},
-      {"limits the wrong way round", [](run_config_t& m) { m.range_max_m = 0.01; }},
-      {"negative noise", [](run_config_t& m) { m.range_noise_m = -1.0; }},
-      {"workspace inside out", [](run_config_t& m) { m.workspace_max_m[2] = -3.0; }},
-      {"lift inside out", [](run_config_t& m) { m.lift_max_m = 0.1; }},
-      {"no speed", [](run_config_t& m) { m.lift_speed_m_s = 0.0; }},
-      {"voxels of no size", [](run_config_t& m) { m.voxel_size_m = 0.0; }},
-      {"window of no size", [](run_config_t& m) { m.window_size[0] = 0; }},
-      {"no views", [](run_config_t& m) { m.max_views = 0; }},
-      {"no attempts", [](run_config_t& m) { m.max_attempts = 0; }},
-      {"threshold above 1", [](run_config_t& m) { m.quality_threshold = 1.5; }},
-      {"steps the wrong way round", [](run_config_t& m) { m.step_min_m = 2.0; }},
-      {"no face of the icosahedron", [](run_config_t& m) { m.directions = 30; }},
-      {"no thread", [](run_config_t& m) { m.threads = 0; }},
-      {"too few evaluations", [](run_config_t& m) { m.max_evaluations = 3; }},
-      {"more evaluations than a message holds", [](run_config_t& m) { m.max_evaluations = 2000; }},
+      {"negative unit", [](run_config_t& m) { m.scene.unit_m = -1.0; }},
+      {"NaN start", [](run_config_t& m) { m.base.start_m[0] = kNan; }},
+      {"tilted over", [](run_config_t& m) { m.base.start_tilt_rad = 2.0; }},
+      {"no columns", [](run_config_t& m) { m.sensor.columns = 0; }},
+      {"huge rows", [](run_config_t& m) { m.sensor.rows = 1 << 20; }},
+      {"a sensor of another geometry", [](run_config_t& m) { m.sensor.geometry = 1; }},
+      {"a parameter the geometry has no use for",
+       [](run_config_t& m) { m.sensor.geometry_parameter[2] = 0.1; }},
+      {"aperture of a half turn", [](run_config_t& m) { m.sensor.geometry_parameter[1] = 3.2; }},
+      {"limits the wrong way round", [](run_config_t& m) { m.sensor.range_max_m = 0.01; }},
+      {"negative noise", [](run_config_t& m) { m.sensor.range_noise_m = -1.0; }},
+      {"workspace inside out", [](run_config_t& m) { m.base.workspace_max_m[2] = -3.0; }},
+      {"lift inside out", [](run_config_t& m) { m.base.lift_max_m = 0.1; }},
+      {"no speed", [](run_config_t& m) { m.base.lift_speed_m_s = 0.0; }},
+      {"voxels of no size", [](run_config_t& m) { m.map.voxel_size_m = 0.0; }},
+      {"window of no size", [](run_config_t& m) { m.map.window_size[0] = 0; }},
+      {"no views", [](run_config_t& m) { m.planner.max_views = 0; }},
+      {"no attempts", [](run_config_t& m) { m.planner.max_attempts = 0; }},
+      {"threshold above 1", [](run_config_t& m) { m.planner.quality_threshold = 1.5; }},
+      {"steps the wrong way round", [](run_config_t& m) { m.planner.step_min_m = 2.0; }},
+      {"no face of the icosahedron", [](run_config_t& m) { m.planner.directions = 30; }},
+      {"no thread", [](run_config_t& m) { m.planner.threads = 0; }},
+      {"too few evaluations", [](run_config_t& m) { m.planner.max_evaluations = 3; }},
+      {"more evaluations than a message holds",
+       [](run_config_t& m) { m.planner.max_evaluations = 2000; }},
+      {"has_scene of 2", [](run_config_t& m) { m.has_scene = 2; }},
+      {"an origin nothing reads", [](run_config_t& m) { m.scene.origin_in_file_m[1] = 1.0; }},
+      {"half the quality", [](run_config_t& m) { m.planner.quality_weight = 0.5; }},
+      {"no rule to stop by", [](run_config_t& m) { m.planner.stop_rule = 0; }},
+      {"the third rule", [](run_config_t& m) { m.planner.stop_rule = 3; }},
+      {"columns to predict with", [](run_config_t& m) { m.planner.prediction_columns = 32; }},
+      {"rows to predict with", [](run_config_t& m) { m.planner.prediction_rows = 32; }},
+      {"structure", [](run_config_t& m) { m.planner.structure_weight = 1.0; }},
+      {"navigation", [](run_config_t& m) { m.planner.navigation_weight = 1.0; }},
+      {"a path cost", [](run_config_t& m) { m.planner.path_cost_per_m = 0.1; }},
+      {"a later departure", [](run_config_t& m) { m.planner.later_departure_m = 0.3; }},
+      {"an overlap", [](run_config_t& m) { m.planner.least_overlap = 0.2; }},
+      {"a gain", [](run_config_t& m) { m.planner.least_gain_m2 = kNan; }},
+      {"the way home", [](run_config_t& m) { m.planner.return_home = 1; }},
+      {"no strategy", [](run_config_t& m) { m.strategy.clear(); }},
+      {"a strategy nobody has", [](run_config_t& m) { m.strategy = "guess"; }},
       {"up is down", [](run_config_t& m) { m.scene_up = "down"; }},
       {"no file", [](run_config_t& m) { m.scene_file.clear(); }},
       {"no digest", [](run_config_t& m) { m.scene_digest.clear(); }},

@@ -19,8 +19,8 @@ Message keyed(int view, int attempt) {
 
 run_config_t config_message() {
   auto config = example<run_config_t>();
-  config.max_views = 9;
-  config.max_attempts = 3;
+  config.planner.max_views = 9;
+  config.planner.max_attempts = 3;
   return config;
 }
 
@@ -40,7 +40,7 @@ std::vector<range_image_t> image_of(int view, int attempt) {
   image.range_m.assign(image.rays.pixels(), 2.0F);
   image.position_m = {1.0, 1.0, 1.0};
   image.pose.position_m = image.position_m;
-  auto parts = range_image_messages(image, view, attempt, 0, 0.25);
+  auto parts = range_image_messages(image, view, attempt, 0);
   for (range_image_t& part : parts) part.run = config_message().run;
   return parts;
 }

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "lcmtypes/bus.h"
+#include "lcmtypes/timing_message.h"
 #include "tests/logger/run_messages.h"
 
 namespace nextview {
@@ -67,8 +68,19 @@ TEST(RunRecord, AnImageIsMissingUntilItsLastPartHasCome) {
   }
   EXPECT_EQ(record.missing_of_view(1), Missing{});
   ASSERT_NE(record.range_image(1, 1), nullptr);
-  EXPECT_EQ(record.range_image(1, 1)->received.image.range_m.size(), 20000u);
-  EXPECT_EQ(record.range_image(1, 1)->scan_wall_s, 0.25);
+  EXPECT_EQ(record.range_image(1, 1)->image.range_m.size(), 20000u);
+}
+
+TEST(RunRecord, KnowsTheTimingsThatHaveComeAndMissesNone) {
+  RunRecord record = record_with_config();
+  record.add(timing_message("mapper", 0, 2, 1, {{"update", 0.5}, {"digest", 0.25}}));
+  record.add(timing_message("planner", 0, 10, 0, {{"fold_before", 0.125}}));
+  EXPECT_EQ(record.duration_s(2, 1, "digest"), 0.25);
+  EXPECT_EQ(record.duration_s(10, 0, "fold_before"), 0.125) << "of the last view";
+  EXPECT_EQ(record.duration_s(2, 1, "scan"), std::nullopt);
+  EXPECT_EQ(record.duration_s(2, 2, "update"), std::nullopt);
+  EXPECT_EQ(record.latest_view(), 0);
+  EXPECT_THROW(record.add(timing_message("planner", 0, 11, 0, {})), RejectedMessage);
 }
 
 TEST(RunRecord, AForgottenImageStillCounts) {

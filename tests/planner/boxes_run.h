@@ -13,15 +13,15 @@ inline run_config_t boxes_run_config() {
   config.scene_file = NEXTVIEW_SOURCE_DIR "/scenes/boxes/boxes.obj";
   const TriangleMesh mesh = load_mesh(config.scene_file);
   config.scene_digest = mesh_digest(mesh);
-  config.start_m[0] = 0.7;
-  config.start_m[1] = 1.0;
-  config.start_m[2] = 1.2;
-  config.start_pan_rad = -std::numbers::pi / 2.0;
+  config.base.start_m[0] = 0.7;
+  config.base.start_m[1] = 1.0;
+  config.base.start_m[2] = 1.2;
+  config.base.start_pan_rad = -std::numbers::pi / 2.0;
   for (int axis = 0; axis < 3; ++axis) {
-    config.workspace_min_m[axis] = mesh.bounds_m().min()[axis];
-    config.workspace_max_m[axis] = mesh.bounds_m().max()[axis];
-    config.window_min[axis] = -1;
-    config.window_size[axis] = 64;
+    config.base.workspace_min_m[axis] = mesh.bounds_m().min()[axis];
+    config.base.workspace_max_m[axis] = mesh.bounds_m().max()[axis];
+    config.map.window_min[axis] = -1;
+    config.map.window_size[axis] = 64;
   }
   return config;
 }

@@ -19,7 +19,7 @@ FinishedRun two_views() {
   FinishedRun run;
   run.config.scene_name = "box";
   run.config.seed = 5;
-  run.config.max_views = 2;
+  run.config.planner.max_views = 2;
   run.stop_detail = "Enough.";
   run.first_goal_to_last_commit_s = 0.02;
   for (int view = 1; view <= 2; ++view) {
@@ -30,13 +30,12 @@ FinishedRun two_views() {
     row.goal.fitness = 0.75;
     row.goal.iterations = 6;
     row.goal.evaluations = 9;
-    row.goal.plan_wall_s = view == 1 ? 0.0 : 0.004;
-    row.first_plan_wall_s = row.goal.plan_wall_s;
+    if (view == 2) row.plan_s = row.first_plan_s = 0.004;
     row.arrival.path_length_m = view == 1 ? 0.0 : 1.5;
     row.commit.pan_rad = std::numbers::pi / 2.0;
     row.commit.map_digest = kDigest;
     row.commit.mean_quality = 0.5;
-    row.commit.update_wall_s = 0.003;
+    row.update_s = 0.003;
     if (view == 2) row.surface_coverage = 0.25;
     run.rows.push_back(row);
   }
@@ -73,6 +72,17 @@ TEST(Views, AreOneRowEach) {
   }
 }
 
+TEST(Views, AreBlankWhereATimingWasLost) {
+  FinishedRun run = two_views();
+  run.rows[1].plan_s.reset();
+  run.rows[1].wait_s = 0.5;
+  std::ostringstream out;
+  write_views(out, run);
+  const auto lines = lines_of(out.str());
+  EXPECT_NE(lines[2].find(",0.75,6,9,,0.500000,"), std::string::npos) << lines[2];
+  EXPECT_TRUE(lines[2].ends_with(",,,0.003000,,,0.500000")) << lines[2];
+}
+
 TEST(Summary, SaysHowTheRunEnded) {
   FinishedRun run = two_views();
   run.collisions = 1;
@@ -93,9 +103,9 @@ TEST(Summary, SaysHowTheRunEnded) {
 
 TEST(Summary, CountsAsBusAndWaitingWhatNoStageOnTheLongestWayTakes) {
   FinishedRun run = two_views();
-  for (ViewRow& row : run.rows) row.fold_wall_s = 0.001;
-  run.rows[1].arrival.move_wall_s = 0.001;
-  run.rows[1].scan_wall_s = 0.001;
+  for (ViewRow& row : run.rows) row.fold_s = 0.001;
+  run.rows[1].move_s = 0.001;
+  run.rows[1].scan_s = 0.001;
   const auto share = [&run] {
     std::ostringstream out;
     write_summary(out, run);
@@ -104,10 +114,10 @@ TEST(Summary, CountsAsBusAndWaitingWhatNoStageOnTheLongestWayTakes) {
   // Of 20 ms: 1 + 4 of fold and plan beside 3 of update, 2 on the way to the next, 3 of update.
   EXPECT_NEAR(share(), 0.5, 1e-12);
   // An update longer than fold and plan is what the goal waits for.
-  run.rows[0].commit.update_wall_s = 0.007;
+  run.rows[0].update_s = 0.007;
   EXPECT_NEAR(share(), 0.4, 1e-12);
   // What follows a refusal is beside nothing.
-  run.rows[1].refused_wall_s = 0.002;
+  run.rows[1].refused_s = 0.002;
   EXPECT_NEAR(share(), 0.3, 1e-12);
 }
 

@@ -24,27 +24,28 @@ TEST(RunSetup, OfThePapersRoomIsThePapers) {
   EXPECT_EQ(check(config), "");
   EXPECT_TRUE(setup.warnings.empty());
   EXPECT_EQ(config.scene_name, "boxes");
-  EXPECT_EQ(config.columns, 64);
-  EXPECT_EQ(config.rows, 30);
-  EXPECT_NEAR(config.vertical_aperture_rad * 180.0 / std::numbers::pi, 39.07, 0.01);
-  EXPECT_EQ(config.voxel_size_m, 0.10);
+  EXPECT_EQ(config.sensor.columns, 64);
+  EXPECT_EQ(config.sensor.rows, 30);
+  EXPECT_NEAR(config.sensor.geometry_parameter[1] * 180.0 / std::numbers::pi, 39.07, 0.01);
+  EXPECT_EQ(config.map.voxel_size_m, 0.10);
   // Walls at the centres of voxels 0 .. 50, 0 .. 30, 0 .. 30, and one voxel more on every side.
-  for (const int min : config.window_min) EXPECT_EQ(min, -1);
-  EXPECT_EQ(config.window_size[0], 53);
-  EXPECT_EQ(config.window_size[1], 33);
-  EXPECT_EQ(config.window_size[2], 33);
-  EXPECT_EQ(config.max_views, 60);
-  EXPECT_EQ(config.use_quality, 0);
-  EXPECT_NEAR(config.lift_max_m, 2.8, 1e-6);
-  EXPECT_EQ(config.start_m[2], 1.2);
+  for (const int min : config.map.window_min) EXPECT_EQ(min, -1);
+  EXPECT_EQ(config.map.window_size[0], 53);
+  EXPECT_EQ(config.map.window_size[1], 33);
+  EXPECT_EQ(config.map.window_size[2], 33);
+  EXPECT_EQ(config.planner.max_views, 60);
+  EXPECT_EQ(config.planner.quality_weight, 0.0);
+  EXPECT_EQ(config.planner.stop_rule, 1);
+  EXPECT_NEAR(config.base.lift_max_m, 2.8, 1e-6);
+  EXPECT_EQ(config.base.start_m[2], 1.2);
 }
 
 TEST(RunSetup, WithQualityTakesMoreViews) {
   RunOptions options = boxes();
   options.quality = true;
-  EXPECT_EQ(prepare_run(options).config.max_views, 300);
+  EXPECT_EQ(prepare_run(options).config.planner.max_views, 300);
   options.views = 7;
-  EXPECT_EQ(prepare_run(options).config.max_views, 7);
+  EXPECT_EQ(prepare_run(options).config.planner.max_views, 7);
 }
 
 TEST(RunSetup, TheCommandLineWinsOverTheScene) {
@@ -53,11 +54,11 @@ TEST(RunSetup, TheCommandLineWinsOverTheScene) {
   options.start_pan_deg = 180.0;
   options.start_tilt_deg = -30.0;
   const run_config_t config = prepare_run(options).config;
-  EXPECT_EQ(config.start_m[0], 0.8);
-  EXPECT_EQ(config.start_m[1], 1.1);
-  EXPECT_EQ(config.start_m[2], 1.3);
-  EXPECT_DOUBLE_EQ(config.start_pan_rad, std::numbers::pi);
-  EXPECT_DOUBLE_EQ(config.start_tilt_rad, -std::numbers::pi / 6.0);
+  EXPECT_EQ(config.base.start_m[0], 0.8);
+  EXPECT_EQ(config.base.start_m[1], 1.1);
+  EXPECT_EQ(config.base.start_m[2], 1.3);
+  EXPECT_DOUBLE_EQ(config.base.start_pan_rad, std::numbers::pi);
+  EXPECT_DOUBLE_EQ(config.base.start_tilt_rad, -std::numbers::pi / 6.0);
 }
 
 TEST(RunSetup, LeavesUnitAndAxisToTheFileUnlessTheyAreGiven) {
@@ -69,17 +70,17 @@ TEST(RunSetup, LeavesUnitAndAxisToTheFileUnlessTheyAreGiven) {
   options.unit.emplace("1.0");
   options.up.emplace("Z");
   const run_config_t config = prepare_run(options).config;
-  EXPECT_EQ(config.unit_m, 1.0);
+  EXPECT_EQ(config.scene.unit_m, 1.0);
   EXPECT_EQ(config.scene_up, "z");
 }
 
 TEST(RunSetup, ScoresWhereTheRobotMayBe) {
   const run_config_t config = prepare_run(boxes()).config;
   const ReachParameters reach = reach_of(config);
-  EXPECT_EQ(reach.clearance_m, config.clearance_m);
-  EXPECT_EQ(reach.box_min_m.z(), config.lift_min_m);
-  EXPECT_EQ(reach.box_max_m.z(), config.lift_max_m);
-  EXPECT_EQ(reach.box_max_m.x(), config.workspace_max_m[0]);
+  EXPECT_EQ(reach.clearance_m, config.planner.clearance_m);
+  EXPECT_EQ(reach.box_min_m.z(), config.base.lift_min_m);
+  EXPECT_EQ(reach.box_max_m.z(), config.base.lift_max_m);
+  EXPECT_EQ(reach.box_max_m.x(), config.base.workspace_max_m[0]);
 }
 
 }  // namespace

@@ -35,10 +35,10 @@ TEST(RangeImageMessage, ComesOutAsItWentInWhateverTheOrderOfItsParts) {
     int columns, rows;
     std::size_t parts;
   };
-  for (const Size size : {Size{2, 2, 1}, Size{64, 30, 1}, Size{512, 256, 11}, Size{2, 1918, 1},
-                          Size{960, 960, 121}}) {
+  for (const Size size :
+       {Size{2, 2, 1}, Size{64, 30, 1}, Size{512, 256, 11}, Size{2, 1918, 1}, Size{960, 960, 76}}) {
     const RangeImage image = make_image(size.columns, size.rows);
-    auto messages = range_image_messages(image, 4, 2, 1000, 0.5);
+    auto messages = range_image_messages(image, 4, 2, 1000);
     EXPECT_EQ(messages.size(), size.parts);
     for (const auto& message : messages) {
       EXPECT_EQ(check(message), "");
@@ -66,8 +66,8 @@ TEST(RangeImageMessage, ComesOutAsItWentInWhateverTheOrderOfItsParts) {
 
 TEST(RangeImageMessage, KeepsImagesApart) {
   const RangeImage image = make_image(512, 256);
-  const auto first = range_image_messages(image, 1, 1, 0, 0.0);
-  const auto second = range_image_messages(image, 2, 1, 0, 0.0);
+  const auto first = range_image_messages(image, 1, 1, 0);
+  const auto second = range_image_messages(image, 2, 1, 0);
   RangeImageAssembler assembler;
   int whole = 0;
   for (std::size_t i = 0; i < first.size(); ++i) {
@@ -78,7 +78,7 @@ TEST(RangeImageMessage, KeepsImagesApart) {
 }
 
 TEST(RangeImageMessage, RejectsPartsThatContradictEachOther) {
-  const auto parts = range_image_messages(make_image(512, 256), 1, 1, 0, 0.0);
+  const auto parts = range_image_messages(make_image(512, 256), 1, 1, 0);
   RangeImageAssembler assembler;
   assembler.add(parts[0]);
   range_image_t elsewhere = parts[1];
@@ -90,6 +90,53 @@ TEST(RangeImageMessage, RejectsPartsThatContradictEachOther) {
   std::optional<ReceivedRangeImage> received;
   for (std::size_t i = 1; i < parts.size(); ++i) received = assembler.add(parts[i]);
   EXPECT_TRUE(received);
+}
+
+TEST(RangeImageMessage, TravelsInPartsAsSmallAsWanted) {
+  const RangeImage image = make_image(20, 10);
+  for (const std::size_t part_bytes : {16U, 17U, 33U, 100U, 479U, 480U, 481U, 1200U, 49152U}) {
+    auto messages = range_image_messages(image, 1, 1, 0, part_bytes);
+    std::size_t entries = 0;
+    for (const range_image_t& message : messages) {
+      EXPECT_EQ(check(message), "") << part_bytes;
+      EXPECT_LE(message.entry_sin.size() * 16 + message.range_m.size() * 4, part_bytes);
+      entries += message.entry_sin.size();
+    }
+    EXPECT_EQ(entries, 30U) << "the ray table travels once";
+    std::ranges::shuffle(messages, std::mt19937(2));
+    RangeImageAssembler assembler;
+    std::optional<ReceivedRangeImage> received;
+    for (const range_image_t& message : messages) received = assembler.add(message);
+    ASSERT_TRUE(received) << part_bytes;
+    EXPECT_EQ(received->image.rays.column_sin, image.rays.column_sin);
+    EXPECT_EQ(received->image.rays.row_cos, image.rays.row_cos);
+    EXPECT_TRUE(same_bits(received->image.range_m, image.range_m));
+    EXPECT_EQ(received->part_hashes.size(), messages.size());
+  }
+  EXPECT_THROW(range_image_messages(image, 1, 1, 0, 15), std::invalid_argument);
+  EXPECT_THROW(range_image_messages(image, 1, 1, 0, kPartBytes + 1), std::invalid_argument);
+}
+
+ReceivedRangeImage received_of(const std::vector<range_image_t>& parts) {
+  RangeImageAssembler assembler;
+  for (const range_image_t& part : parts) {
+    if (auto received = assembler.add(part)) return *received;
+  }
+  throw std::logic_error("not whole");
+}
+
+TEST(HistoryDigest, IsOfAllImagesSoFarWhateverTheRunOrTheOrderOfParts) {
+  auto first = range_image_messages(make_image(20, 10), 1, 1, 0, 200);
+  const auto second = range_image_messages(make_image(20, 10), 2, 1, 0, 200);
+  const std::string one = history_digest("", received_of(first));
+  EXPECT_EQ(one.size(), 32U);
+  const std::string two = history_digest(one, received_of(second));
+  EXPECT_NE(two, history_digest("", received_of(second)));
+  std::ranges::reverse(first);
+  for (range_image_t& part : first) part.run = 99;
+  EXPECT_EQ(history_digest("", received_of(first)), one);
+  first[0].range_m[0] = 29.0F;
+  EXPECT_NE(history_digest("", received_of(first)), one);
 }
 
 }  // namespace

@@ -19,9 +19,9 @@ using std::chrono::milliseconds;
 
 run_config_t boxes_config() {
   run_config_t config = boxes_run_config();
-  config.columns = 128;  // 16 384 pixels: an image of two parts
-  config.rows = 128;
-  config.max_views = 8;
+  config.sensor.columns = 128;  // 16 384 pixels: an image of two parts
+  config.sensor.rows = 128;
+  config.planner.max_views = 8;
   return config;
 }
 

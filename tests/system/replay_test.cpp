@@ -83,6 +83,18 @@ TEST_F(RecordedRun, ARangeThatWasChangedIsFound) {
   expect_disagreement(replay_folder(folder), "view 4: the map rebuilt has digest ");
 }
 
+TEST_F(RecordedRun, AnImageThatWasChangedWhereTheMapDoesNotLookIsFound) {
+  const auto folder = tampered([](const lcm::LogEvent& event, const Bytes& bytes) {
+    if (is_view<range_image_t>(event, bytes, 4)) {
+      range_image_t image = *decode_checked<range_image_t>(bytes).message;
+      image.pan_rad += 1e-6;
+      return Instead{encode(image)};
+    }
+    return Instead{bytes};
+  });
+  expect_disagreement(replay_folder(folder), "view 4: the range images so far have history digest");
+}
+
 TEST_F(RecordedRun, AMessageLeftOutIsFound) {
   const auto without_commit = tampered([](const lcm::LogEvent& event, const Bytes& bytes) {
     return is_view<commit_t>(event, bytes, 3) ? Instead{} : Instead{bytes};
