@@ -59,9 +59,6 @@ void ChebyshevDistance::resize(const VoxelIndex& cells, int threads) {
   stride_ = (static_cast<std::size_t>(cells[0]) + 2 * kMargin - 1) / kMargin * kMargin;
   layer_ = stride_ * static_cast<std::size_t>(rows_);
   distances_.assign((layer_ + kMargin) * static_cast<std::size_t>(layers_) + kMargin, kLargest);
-  for (Bytes* layer : {&come_up_, &come_down_}) {
-    layer->assign(threads > 1 ? layer_ + 2 * stride_ : 0, kLargest);
-  }
 }
 
 void ChebyshevDistance::fill_row(int y, int z, const Byte* bytes, Byte largest_free) {
@@ -73,17 +70,12 @@ void ChebyshevDistance::fill_row(int y, int z, const Byte* bytes, Byte largest_f
 
 void ChebyshevDistance::find() {
   if (threads_ == 1) {
-    Bytes narrowed = free_layer();
-    go_up(0, layers_, narrowed);
-    go_down(0, layers_, narrowed);
+    lower_layers();
     finish_layers(0, layers_);
     return;
   }
-  const int middle = std::max(layers_ / 2, 1);
-#pragma omp for schedule(static)
-  for (int half = 0; half < 2; ++half) go_to_middle(half, middle);
-#pragma omp for schedule(static)
-  for (int half = 0; half < 2; ++half) go_from_middle(half, middle);
+#pragma omp single
+  lower_layers();
   const int parts = omp_get_num_threads();
 #pragma omp for schedule(static)
   for (int part = 0; part < parts; ++part) {
@@ -91,38 +83,10 @@ void ChebyshevDistance::find() {
   }
 }
 
-void ChebyshevDistance::go_to_middle(int half, int middle) {
+void ChebyshevDistance::lower_layers() {
   Bytes narrowed = free_layer();
-  if (half == 0) {
-    go_up(0, middle, narrowed);
-    std::copy_n(&distances_[place(0, middle - 1)], layer_, &come_up_[stride_]);
-  } else if (middle < layers_) {
-    go_down(middle, layers_, narrowed);
-    std::copy_n(&distances_[place(0, middle)], layer_, &come_down_[stride_]);
-  }
-}
-
-void ChebyshevDistance::go_from_middle(int half, int middle) {
-  Bytes narrowed = free_layer();
-  if (half == 0) {
-    lower_layer(middle - 1, &come_down_[stride_], narrowed);
-    go_down(0, middle, narrowed);
-  } else if (middle < layers_) {
-    lower_layer(middle, &come_up_[stride_], narrowed);
-    go_up(middle, layers_, narrowed);
-  }
-}
-
-void ChebyshevDistance::go_up(int begin_z, int end_z, Bytes& narrowed) {
-  for (int z = begin_z + 1; z < end_z; ++z) {
-    lower_layer(z, &distances_[place(0, z - 1)], narrowed);
-  }
-}
-
-void ChebyshevDistance::go_down(int begin_z, int end_z, Bytes& narrowed) {
-  for (int z = end_z - 2; z >= begin_z; --z) {
-    lower_layer(z, &distances_[place(0, z + 1)], narrowed);
-  }
+  for (int z = 1; z < layers_; ++z) lower_layer(z, z - 1, narrowed);
+  for (int z = layers_ - 2; z >= 0; --z) lower_layer(z, z + 1, narrowed);
 }
 
 void ChebyshevDistance::finish_layers(int begin_z, int end_z) {
@@ -133,9 +97,9 @@ void ChebyshevDistance::finish_layers(int begin_z, int end_z) {
   for (int z = begin_z; z < end_z; ++z) lower_along_rows(z, a, b);
 }
 
-void ChebyshevDistance::lower_layer(int z, const Byte* from_layer, Bytes& narrowed) {
+void ChebyshevDistance::lower_layer(int z, int from_z, Bytes& narrowed) {
   Byte* const from = &narrowed[stride_];
-  narrow(from_layer, from, layer_);
+  narrow(row(0, from_z), from, layer_);
   lower(from - stride_, from, from + stride_, &distances_[place(0, z)], layer_);
 }
 

@@ -33,18 +33,11 @@ class ChebyshevDistance {
   const std::uint8_t* row(int y, int z) const { return &distances_[place(y, z)]; }
 
   /// Replaces what the rows were filled with by distances. To be called by all threads of an OpenMP
-  /// region, or outside of one. Of several threads two go along z, one in the lower half of the
-  /// layers and one in the upper half; what they pass to each other is one layer each.
-  ///
-  ///     upper half   down  |  then up, from what has come up to the middle
-  ///     lower half   up    |  then down, from what has come down to the middle
-  ///
-  /// Then all share the layers. The result is the same.
+  /// region, or outside of one. Of several threads one goes along z, a quarter to a third of the
+  /// work, and then all share the layers. The result is the same.
   void find();
 
-  std::size_t memory_bytes() const {
-    return distances_.capacity() + come_up_.capacity() + come_down_.capacity();
-  }
+  std::size_t memory_bytes() const { return distances_.capacity(); }
 
  private:
   // Loops run over all rows of a layer as if they were one long row. So many free cells lie between
@@ -61,13 +54,9 @@ class ChebyshevDistance {
     return kMargin + static_cast<std::size_t>(z) * (layer_ + kMargin) +
            static_cast<std::size_t>(y) * stride_;
   }
-  void go_to_middle(int half, int middle);
-  void go_from_middle(int half, int middle);
-  // Lower the layers from begin_z to before end_z, each from the one before or after it there.
-  void go_up(int begin_z, int end_z, Bytes& narrowed);
-  void go_down(int begin_z, int end_z, Bytes& narrowed);
+  void lower_layers();
   void finish_layers(int begin_z, int end_z);
-  void lower_layer(int z, const std::uint8_t* from_layer, Bytes& narrowed);
+  void lower_layer(int z, int from_z, Bytes& narrowed);
   void lower_rows(int y, int from_y, int begin_z, int end_z);
   void lower_along_rows(int z, Bytes& a, Bytes& b);
 
@@ -78,8 +67,6 @@ class ChebyshevDistance {
   std::size_t layer_ = 0;   ///< of all rows of a layer
   int threads_ = 1;
   Bytes distances_;
-  Bytes come_up_;  ///< the layer below the middle, when the lower half has gone up; a free_layer()
-  Bytes come_down_;  ///< the layer above it, when the upper half has gone down
 };
 
 }  // namespace nextview

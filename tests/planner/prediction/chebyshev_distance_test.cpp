@@ -89,7 +89,7 @@ TEST(ChebyshevDistance, AgreesWithTheDefinitionInRandomBoxes) {
   ChebyshevDistance distance;  // one for all: it must forget the last box
   int cells_compared = 0;
   for (int box = 0; box < 150; ++box) {
-    // Every tenth box has one or two layers, so that a half of it is empty or a single layer.
+    // Every tenth box has one or two layers, fewer than threads.
     const VoxelIndex cells(1 + below(75), 1 + below(45), 1 + below(box % 10 == 0 ? 2 : 40));
     std::vector<VoxelIndex> obstacles;
     for (int i = below(12); i > 0; --i) {
