@@ -1,7 +1,6 @@
 #include "mapper/ray_ends.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -121,15 +120,14 @@ bool has_reciprocal(double voxel_size_m) { return voxel_size_m > 1e-300 && voxel
 
 constexpr std::uint32_t kNoEnd = ~std::uint32_t{0};
 
-// Where an end belongs in a table of a power of two of places: the top bits of the product of its
-// voxel, relative to the sensor's in 16 bits an axis, with the golden ratio. Ends lie within
-// kFarthestVoxels of the sensor, so 16 bits hold them.
-std::size_t first_place(const VoxelIndex& displacement, bool is_surface, std::size_t places) {
+// An end as a number: its voxel, relative to the sensor's in 16 bits an axis, and whether it is a
+// surface. Ends lie within kFarthestVoxels of the sensor, so 16 bits hold them.
+std::uint64_t key_of(const VoxelIndex& displacement, bool is_surface) {
   std::uint64_t key = is_surface ? 1 : 0;
   for (int axis = 0; axis < 3; ++axis) {
     key = key << 16 | static_cast<std::uint16_t>(displacement[axis]);
   }
-  return static_cast<std::size_t>(key * 0x9e3779b97f4a7c15u >> (64 - std::countr_zero(places)));
+  return key;
 }
 
 void add_points(const PixelRun& run, SurfaceVoxel& seen) {
@@ -144,11 +142,7 @@ void RayEnds::collect(const RangeImage& image, const VoxelGrid& grid, const MapW
   sensor_ = grid.voxel_of(image.position_m);
   counts_ = {};
   ends_.clear();
-  if (table_.empty()) {
-    grow_table(image.range_m.size() / 8);  // seldom outgrown
-    ends_.reserve(table_.size() / 2);
-  }
-  std::fill(table_.begin(), table_.end(), kNoEnd);
+  numbers_.clear(image.range_m.size() / 16);  // seldom outgrown
 
   normals_.prepare(image);
   const int columns = image.rays.columns();
@@ -238,38 +232,16 @@ RayEnd& RayEnds::end_of(const PixelRun& run, const VoxelIndex& voxel, bool is_su
 }
 
 std::uint32_t RayEnds::number_of(const VoxelIndex& voxel, bool is_surface) {
-  if (2 * ends_.size() >= table_.size()) grow_table(2 * table_.size());
-  const std::size_t place = place_of(voxel, is_surface);
-  if (table_[place] == kNoEnd) {
-    table_[place] = static_cast<std::uint32_t>(ends_.size());
-    ends_.push_back({voxel, is_surface, {}});
-  }
-  return table_[place];
-}
-
-std::size_t RayEnds::place_of(const VoxelIndex& voxel, bool is_surface) const {
-  const std::size_t mask = table_.size() - 1;
-  const auto is_here = [&](std::uint32_t number) {
-    return ends_[number].voxel == voxel && ends_[number].is_surface == is_surface;
-  };
-  std::size_t place = first_place(voxel - sensor_, is_surface, table_.size());
-  while (table_[place] != kNoEnd && !is_here(table_[place])) place = (place + 1) & mask;
-  return place;
-}
-
-void RayEnds::grow_table(std::size_t places) {
-  table_.assign(std::bit_ceil(std::max<std::size_t>(1024, places)), kNoEnd);
-  for (std::size_t number = 0; number < ends_.size(); ++number) {
-    const RayEnd& end = ends_[number];
-    table_[place_of(end.voxel, end.is_surface)] = static_cast<std::uint32_t>(number);
-  }
+  const std::uint32_t number = numbers_.number_of(key_of(voxel - sensor_, is_surface));
+  if (number == ends_.size()) ends_.push_back({voxel, is_surface, {}});
+  return number;
 }
 
 std::size_t RayEnds::memory_bytes() const {
   const std::size_t numbers =
-      4 * row_.kind.capacity() + end_above_.capacity() + end_here_.capacity() + table_.capacity();
-  return normals_.memory_bytes() + runs_.memory_bytes() + numbers * sizeof(std::uint32_t) +
-         ends_.capacity() * sizeof(RayEnd);
+      4 * row_.kind.capacity() + end_above_.capacity() + end_here_.capacity();
+  return normals_.memory_bytes() + runs_.memory_bytes() + numbers_.memory_bytes() +
+         numbers * sizeof(std::uint32_t) + ends_.capacity() * sizeof(RayEnd);
 }
 
 }  // namespace nextview

@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "mapper/key_numbers.h"
 #include "mapper/normals.h"
 #include "mapper/pixel_runs.h"
 #include "mapper/voxel_map.h"
@@ -56,10 +57,6 @@ class RayEnds {
   void add_run(const PixelRun& run, const MapWindow& window);
   RayEnd& end_of(const PixelRun& run, const VoxelIndex& voxel, bool is_surface);
   std::uint32_t number_of(const VoxelIndex& voxel, bool is_surface);
-  /// The place of the table where an end is or, if it is not, belongs.
-  std::size_t place_of(const VoxelIndex& voxel, bool is_surface) const;
-  /// To this many places at least.
-  void grow_table(std::size_t places);
 
   VoxelIndex sensor_;
   NormalEstimator normals_;
@@ -69,8 +66,7 @@ class RayEnds {
   std::vector<RayEnd> ends_;
   /// By column, a number in ends_ that the pixel above, or here, is likely to end at.
   std::vector<std::uint32_t> end_above_, end_here_;
-  /// Numbers in ends_, by open addressing; its size is a power of two.
-  std::vector<std::uint32_t> table_;
+  KeyNumbers numbers_;  ///< of ends_
   PixelCounts counts_;
 };
 
