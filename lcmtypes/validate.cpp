@@ -1,20 +1,16 @@
 #include "lcmtypes/validate.h"
 
 #include <cstdint>
-#include <limits>
 #include <numbers>
 
 #include "lcmtypes/validate_checks.h"
+#include "sensor/range_image_check.h"
 
 namespace nextview {
 namespace {
 
 constexpr double kHalfTurn = std::numbers::pi;
 constexpr double kQuarterTurn = std::numbers::pi / 2.0;
-/// Sines, cosines and rotations may be off by rounding, not by more.
-constexpr double kUnitTolerance = 1e-6;
-/// Ranges are rounded to 0.1 mm, also at the limit.
-constexpr double kRangeTolerance_m = 1e-3;
 
 template <class Message>
 Checks check_key(const Message& message) {
@@ -33,25 +29,12 @@ void check_angles(Checks& checks, double pan_rad, double tilt_rad) {
                 kQuarterTurn + kUnitTolerance);
 }
 
-bool on_unit_circle(const std::vector<double>& sines, const std::vector<double>& cosines) {
-  for (std::size_t i = 0; i < sines.size(); ++i) {
-    const double square = sines[i] * sines[i] + cosines[i] * cosines[i];
-    if (!(std::abs(square - 1.0) <= kUnitTolerance)) return false;
-  }
-  return true;
-}
-
-bool is_rotation(const double (&m)[3][3]) {
+Eigen::Matrix3d matrix_of(const double (&m)[3][3]) {
+  Eigen::Matrix3d matrix;
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      const double dot = m[i][0] * m[j][0] + m[i][1] * m[j][1] + m[i][2] * m[j][2];
-      if (!(std::abs(dot - (i == j ? 1.0 : 0.0)) <= kUnitTolerance)) return false;
-    }
+    for (int j = 0; j < 3; ++j) matrix(i, j) = m[i][j];
   }
-  const double determinant = m[0][0] * (m[1][1] * m[2][2] - m[1][2] * m[2][1]) -
-                             m[0][1] * (m[1][0] * m[2][2] - m[1][2] * m[2][0]) +
-                             m[0][2] * (m[1][0] * m[2][1] - m[1][1] * m[2][0]);
-  return determinant > 0.0;
+  return matrix;
 }
 
 void check_part(Checks& checks, const range_image_t& image) {
@@ -98,20 +81,6 @@ void check_names(Checks& checks, std::string_view field, std::string_view list,
                              std::string_view::npos,
         std::string(field) + " has a name that is no word of a-z, 0-9 and _");
   }
-}
-
-// NaN and +inf are said on purpose: invalid and no return. The loop goes on to the end, wrong or
-// not, because only then compilers make vectors of it.
-bool are_ranges(const std::vector<float>& range_m, double range_max_m) {
-  const double longest_m = range_max_m + kRangeTolerance_m;
-  int wrong = 0;
-  for (const float m : range_m) {
-    const int is_finite = m <= std::numeric_limits<float>::max();
-    const int is_beyond = static_cast<double>(m) > longest_m;
-    const int is_negative = m < 0.0F;
-    wrong |= is_negative | (is_finite & is_beyond);
-  }
-  return wrong == 0;
 }
 
 }  // namespace
@@ -169,12 +138,13 @@ std::string check(const range_image_t& image) {
                  "sine and cosine of a column or row do not belong together");
   checks.not_negative("range_min_m", image.range_min_m);
   checks.positive("range_max_m", image.range_max_m);
-  checks.require(image.range_min_m < image.range_max_m, "range_min_m is not below range_max_m");
+  checks.require(are_range_limits({image.range_min_m, image.range_max_m}),
+                 "range_min_m is not below range_max_m");
   checks.finite("position_m", image.position_m);
   check_angles(checks, image.pan_rad, image.tilt_rad);
-  checks.require(is_rotation(image.world_from_sensor), "world_from_sensor is not a rotation");
-  checks.require(are_ranges(image.range_m, image.range_max_m),
-                 "a range is negative, -inf or beyond range_max_m");
+  checks.require(is_rotation(matrix_of(image.world_from_sensor)),
+                 "world_from_sensor is not a rotation");
+  checks.require(are_ranges(image.range_m), "a range is negative or -inf");
   return checks.reason();
 }
 

@@ -14,10 +14,10 @@ namespace nextview {
 
 /// What folding one range image did.
 struct FoldReport {
-  std::int64_t points = 0;          ///< finite ranges whose point lies inside the window
-  std::int64_t points_outside = 0;  ///< finite ranges whose point lies outside the window
-  std::int64_t no_returns = 0;      ///< +inf: known free up to the sensor's largest range
-  std::int64_t invalid = 0;         ///< NaN: nothing known
+  std::int64_t points = 0;          ///< points inside the window
+  std::int64_t points_outside = 0;  ///< points outside the window
+  std::int64_t no_returns = 0;      ///< known free up to the sensor's largest range (RangeKind)
+  std::int64_t invalid = 0;         ///< nothing known
   std::int64_t newly_occupied = 0;  ///< voxels that became Occupied
   /// Slots (VoxelMap::slot) whose label differs from before the fold, each once; in a fixed order
   /// that depends on the image and the map alone.

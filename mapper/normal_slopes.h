@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "mapper/voxel_map.h"
+#include "sensor/range_image.h"
 
 namespace nextview {
 
@@ -42,9 +44,18 @@ inline float select(bool condition, float yes, float no) {
 }
 inline bool is_number(float value) { return value == value; }
 
+/// The ranges that can give a normal: those of points (RangeKind), within [1 mm, 1000 km].
+struct UsableRanges {
+  explicit UsableRanges(const RangeBounds& bounds)
+      : nearest_m(std::max(1e-3f, bounds.nearest_m)),
+        farthest_m(std::min(1e6f, bounds.farthest_m)) {}
+  float nearest_m;
+  float farthest_m;
+};
+
 /// The range, or NaN where it can give no normal.
-inline float usable_range(float range_m) {
-  const bool usable = (range_m >= 1e-3f) & (range_m <= 1e6f);
+inline float usable_range(float range_m, const UsableRanges& ranges) {
+  const bool usable = (range_m >= ranges.nearest_m) & (range_m <= ranges.farthest_m);
   return select(usable, range_m, std::numeric_limits<float>::quiet_NaN());
 }
 

@@ -34,11 +34,11 @@ struct StepView {
 };
 
 NEXTVIEW_VECTOR_CLONES
-void invert_ranges(int columns, const float* __restrict from, float* __restrict range,
-                   float* __restrict w) {
+void invert_ranges(int columns, UsableRanges usable, const float* __restrict from,
+                   float* __restrict range, float* __restrict w) {
 #pragma omp simd
   for (int u = 0; u < columns; ++u) {
-    range[u] = usable_range(from[u]);
+    range[u] = usable_range(from[u], usable);
     w[u] = 1.0f / range[u];
   }
 }
@@ -173,6 +173,7 @@ NormalEstimator::Axis NormalEstimator::make_axis(const std::vector<double>& sine
 void NormalEstimator::prepare(const RangeImage& image) {
   const RayTable& rays = image.rays;
   image_range_m_ = image.range_m.data();
+  usable_ = UsableRanges(RangeBounds(image.limits));
   next_slope_ = 0;
   next_bend_ = 0;
   column_axis_ = make_axis(rays.column_sin, rays.column_cos);
@@ -205,7 +206,7 @@ void NormalEstimator::resize(int columns, int rows) {
 
 void NormalEstimator::take_ranges(int v) {
   const float* const from = image_range_m_ + static_cast<std::ptrdiff_t>(v) * columns_;
-  invert_ranges(columns_, from, range_.row(v), inverse_range_.row(v));
+  invert_ranges(columns_, usable_, from, range_.row(v), inverse_range_.row(v));
 }
 
 void NormalEstimator::slope_along_row(int v) {

@@ -38,12 +38,13 @@ struct NormalRow {
 ///
 /// Each derivative so has two candidates, from the pixel before and the pixel after. On a plane
 /// they agree and their mean is taken. Where they do not, at a crease or an edge, that side is
-/// taken whose own neighbour further on confirms it (choose_slope in normals.cpp). A pixel with no
-/// usable neighbour on an axis has no normal. Neighbours are taken at least 0.9 degrees away, so
+/// taken whose own neighbour further on confirms it (choose_slope in normal_slopes.h). A pixel with
+/// no usable neighbour on an axis has no normal. Neighbours are taken at least 0.9 degrees away, so
 /// that dense images suffer no more from noise than the paper's sensor.
 ///
 /// Only additions, multiplications, divisions and square roots of floats in a fixed order: the same
-/// bits from any compiler. Ranges outside [1 mm, 1000 km] have no normal.
+/// bits from any compiler. Only points have a normal, and of these only those within [1 mm, 1000
+/// km].
 class NormalEstimator {
  public:
   /// Begins an image with as many ranges as its table has pixels, at least 2 x 2. Its ranges are
@@ -94,6 +95,7 @@ class NormalEstimator {
   void bend_along_column(int v);
 
   const float* image_range_m_ = nullptr;
+  UsableRanges usable_{RangeBounds(RangeLimits())};
   int columns_ = 0;
   int rows_ = 0;
   int next_slope_ = 0;  ///< the first row without slope

@@ -2,16 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "sensor/vector_clones.h"
 
 namespace nextview {
 
 namespace {
-
-// Why a ray ends where it does.
-enum PixelKind : std::int32_t { kPoint = 0, kNoReturn = 1, kInvalid = 2 };
 
 // What eq. 1 and 2 need to know of one axis of the world.
 struct AxisOfPoints {
@@ -26,6 +22,7 @@ struct RowOfRays {
   const double* __restrict column_cos;
   double row_sin, row_cos;
   const float* __restrict range_m;
+  RangeBounds bounds;
   double farthest_m;  // where a return is farther away
   double clear_m;     // where there is no return
 };
@@ -38,16 +35,15 @@ struct EndsOfRow {
   std::int32_t* __restrict kind;
 };
 
-inline std::int32_t kind_of(float range_m) {
-  const bool is_finite = range_m <= std::numeric_limits<float>::max();
-  return static_cast<std::int32_t>(!is_finite) + static_cast<std::int32_t>(range_m != range_m);
+inline std::int32_t kind_of(const RowOfRays& rays, float range_m) {
+  return static_cast<std::int32_t>(rays.bounds.kind_of(range_m));
 }
 
 inline double followed_m(const RowOfRays& rays, float range_m) {
   const double d = static_cast<double>(range_m);
   const double point_m = d < rays.farthest_m ? d : rays.farthest_m;
-  const double length_m = range_m <= std::numeric_limits<float>::max() ? point_m : rays.clear_m;
-  return range_m == range_m ? length_m : 0.0;
+  const double length_m = range_m > rays.bounds.farthest_m ? rays.clear_m : point_m;
+  return range_m >= rays.bounds.nearest_m ? length_m : 0.0;
 }
 
 // A point's coordinate along an axis (eq. 1), relative to the grid's origin and moved away from it
@@ -79,7 +75,7 @@ void end_voxels(int columns, const RowOfRays& rays, const AxisOfPoints (&axes)[3
     ends.x[u] = index(axis_x);
     ends.y[u] = index(axis_y);
     ends.z[u] = index(axis_z);
-    ends.kind[u] = kind_of(row.range_m[u]);
+    ends.kind[u] = kind_of(row, row.range_m[u]);
   }
 }
 
@@ -109,7 +105,7 @@ bool end_voxels_by_reciprocal(int columns, const RowOfRays& rays, const AxisOfPo
     ends.x[u] = index(axis_x, x);
     ends.y[u] = index(axis_y, y);
     ends.z[u] = index(axis_z, z);
-    ends.kind[u] = kind_of(row.range_m[u]);
+    ends.kind[u] = kind_of(row, row.range_m[u]);
     doubt |= (ends.x[u] ^ x) | (ends.y[u] ^ y) | (ends.z[u] ^ z);
   }
   return doubt == 0;
@@ -170,6 +166,7 @@ void RayEnds::find_ends(const RangeImage& image, const VoxelGrid& grid, int v) {
                           image.rays.row_sin[row],
                           image.rays.row_cos[row],
                           image.range_m.data() + row * size,
+                          RangeBounds(image.limits),
                           farthest_m,
                           std::min(image.limits.max_m, farthest_m)};
   const auto axis = [&](int a) {
@@ -193,8 +190,8 @@ void RayEnds::add_run(const PixelRun& run, const MapWindow& window) {
   const auto u = static_cast<std::size_t>(run.begin) + 1;
   const std::int64_t pixels = run.end - run.begin;
   const VoxelIndex voxel(row_.end[0][u], row_.end[1][u], row_.end[2][u]);
-  switch (static_cast<PixelKind>(row_.kind[u])) {
-    case kPoint:
+  switch (static_cast<RangeKind>(row_.kind[u])) {
+    case RangeKind::Point:
       if (window.contains(voxel)) {
         counts_.points += pixels;
         add_points(run, end_of(run, voxel, true).seen);
@@ -203,11 +200,11 @@ void RayEnds::add_run(const PixelRun& run, const MapWindow& window) {
         end_of(run, voxel, false);
       }
       return;
-    case kNoReturn:
+    case RangeKind::NoReturn:
       counts_.no_returns += pixels;
       end_of(run, voxel, false);
       return;
-    case kInvalid:
+    case RangeKind::Invalid:
       counts_.invalid += pixels;
       return;
   }

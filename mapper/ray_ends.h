@@ -30,8 +30,8 @@ struct RayEnd {
 struct PixelCounts {
   std::int64_t points = 0;          ///< a point inside the window
   std::int64_t points_outside = 0;  ///< a point outside: the line towards it is free in the window
-  std::int64_t no_returns = 0;      ///< +inf: the line is free up to the largest range
-  std::int64_t invalid = 0;         ///< NaN: says nothing
+  std::int64_t no_returns = 0;      ///< RangeKind::NoReturn: free up to the largest range
+  std::int64_t invalid = 0;         ///< RangeKind::Invalid: says nothing
 };
 
 /// Collects where the rays of an image end: eq. 1 and 2 for every pixel, its normal and quality.
@@ -50,7 +50,7 @@ class RayEnds {
   /// Of a row of pixels, from column -1 on: where each ray ends, and why there.
   struct Row {
     std::array<std::vector<std::int32_t>, 3> end;
-    std::vector<std::int32_t> kind;  ///< PixelKind
+    std::vector<std::int32_t> kind;  ///< RangeKind
   };
 
   void find_ends(const RangeImage& image, const VoxelGrid& grid, int v);

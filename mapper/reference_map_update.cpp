@@ -43,15 +43,17 @@ void ReferenceMapUpdate::fold(const RangeImage& image) {
   check_range_image(image, grid_, window_);
   const VoxelIndex sensor = grid_.voxel_of(image.position_m);
   const double farthest_m = kFarthestVoxels * grid_.voxel_size_m;
+  const RangeBounds bounds(image.limits);
   for (int v = 0; v < image.rays.rows(); ++v) {
     for (int u = 0; u < image.rays.columns(); ++u) {
       const auto pixel = static_cast<std::size_t>(v * image.rays.columns() + u);
-      const double range_m = image.range_m[pixel];
-      if (std::isnan(range_m)) continue;
-      const double distance_m =
-          std::min(std::isinf(range_m) ? image.limits.max_m : range_m, farthest_m);
+      const RangeKind kind = bounds.kind_of(image.range_m[pixel]);
+      if (kind == RangeKind::Invalid) continue;
+      const double followed_m =
+          kind == RangeKind::NoReturn ? image.limits.max_m : image.range_m[pixel];
+      const double distance_m = std::min(followed_m, farthest_m);
       const VoxelIndex end = grid_.voxel_of(point_along(image, u, v, distance_m));
-      const bool is_surface = std::isfinite(range_m) && window_.contains(end);
+      const bool is_surface = kind == RangeKind::Point && window_.contains(end);
       trace(sensor, end, is_surface);
       if (!is_surface) continue;
       const PointNormal normal = reference_normal(image, u, v);
@@ -178,7 +180,8 @@ class PixelNeighbourhood {
   float range(int u, int v) const {
     const RayTable& rays = image_.rays;
     if (u < 0 || u >= rays.columns() || v < 0 || v >= rays.rows()) return kNaN;
-    return usable_range(image_.range_m[static_cast<std::size_t>(v * rays.columns() + u)]);
+    return usable_range(image_.range_m[static_cast<std::size_t>(v * rays.columns() + u)],
+                        UsableRanges(RangeBounds(image_.limits)));
   }
   float w(int u, int v) const { return 1.0f / range(u, v); }
 

@@ -27,7 +27,7 @@ RangeImage looking_along_y(const std::vector<float>& range_m) {
   image.rays.column_cos = {1.0, 1.0};
   image.rays.row_sin = {0.0, 0.0};
   image.rays.row_cos = {1.0, 1.0};
-  image.limits = {0.0, 3.0};
+  image.limits = {0.0, 6.0};
   image.range_m = range_m;
   return image;
 }
@@ -102,13 +102,47 @@ TEST(MapBuilder, NoReturnIsFreeUpToTheLargestRangeAndInvalidSaysNothing) {
   EXPECT_EQ(report.invalid, 4);
   EXPECT_TRUE(report.changed_slots.empty());
   EXPECT_EQ(builder.digest(), MapBuilder(metre_grid(), MapWindow()).digest());
-  builder.fold(looking_along_y({kInf, kNaN, kInf, kInf}));
+  RangeImage image = looking_along_y({kInf, kNaN, kInf, kInf});
+  image.limits.max_m = 3.0;
+  builder.fold(image);
   EXPECT_EQ(along_y(builder.map(), 0, 0), "uEEEEuuu");
+}
+
+TEST(MapBuilder, RangeBeyondTheLargestIsNoReturn) {
+  MapBuilder builder(metre_grid(), {{-1, -1, -1}, {3, 8, 3}});
+  RangeImage image = looking_along_y({3.0001f, 5.0f, 3e38f, 100.0f});
+  image.limits = {0.5, 3.0};
+  const FoldReport& report = builder.fold(image);
+  EXPECT_EQ(report.no_returns, 4);
+  EXPECT_EQ(report.points, 0);
+  EXPECT_EQ(along_y(builder.map(), 0, 0), "uEEEEuuu");
+}
+
+TEST(MapBuilder, RangeBelowTheSmallestIsInvalid) {
+  MapBuilder builder(metre_grid(), {{-1, -1, -1}, {3, 8, 3}});
+  RangeImage image = looking_along_y({0.0f, -0.0f, 0.4999f, 0.1f});
+  image.limits = {0.5, 3.0};
+  const FoldReport& report = builder.fold(image);
+  EXPECT_EQ(report.invalid, 4);
+  EXPECT_EQ(report.points, 0);
+  EXPECT_TRUE(report.changed_slots.empty());
+  EXPECT_EQ(along_y(builder.map(), 0, 0), "uuuuuuuu") << "the sensor's own voxel above all";
+}
+
+TEST(MapBuilder, RangeAtALimitIsAPoint) {
+  // 0.7 m is a little more than 0.7f, and 2.3 m a little less than 2.3f.
+  MapBuilder builder(metre_grid(), {{-1, -1, -1}, {3, 8, 3}});
+  RangeImage image = looking_along_y({0.7f, 0.7f, 2.3f, 2.3f});
+  image.limits = {0.7, 2.3};
+  EXPECT_EQ(builder.fold(image).points, 4);
+  EXPECT_EQ(along_y(builder.map(), 0, 0), "uEOO####");
 }
 
 TEST(MapBuilder, PointOutsideTheWindowFreesTheWayToIt) {
   MapBuilder builder(metre_grid(), {{-1, -1, -1}, {3, 8, 3}});
-  const FoldReport& report = builder.fold(looking_along_y({7.0f, 1e30f, 3e38f, 7.4f}));
+  RangeImage image = looking_along_y({7.0f, 1e30f, 3e38f, 7.4f});
+  image.limits.max_m = 3.2e38;
+  const FoldReport& report = builder.fold(image);
   EXPECT_EQ(report.points_outside, 4);
   EXPECT_EQ(report.points, 0);
   EXPECT_EQ(along_y(builder.map(), 0, 0), "uEEEEEEE");
@@ -123,7 +157,7 @@ TEST(MapBuilder, PointInTheSensorsOwnVoxelHidesNothing) {
 TEST(MapBuilder, HitsBeatMissesWithinAnImage) {
   MapBuilder builder(metre_grid(), {{-1, -1, -1}, {3, 8, 3}});
   builder.fold(looking_along_y({2.0f, 5.0f, kInf, 3.0f}));
-  EXPECT_EQ(along_y(builder.map(), 0, 0), "uEEOOEO#");
+  EXPECT_EQ(along_y(builder.map(), 0, 0), "uEEOOEOE");
 }
 
 TEST(MapBuilder, KeepsTheBestQualityAndTheSumOfNormals) {
@@ -152,7 +186,7 @@ TEST(MapBuilder, ImagesThatCannotBeRightLeaveTheMapAlone) {
   const RangeImage good = looking_along_y({3.0f, 3.0f, 3.0f, 3.0f});
   builder.fold(good);
   const std::string digest = builder.digest();
-  std::vector<RangeImage> bad(11, good);
+  std::vector<RangeImage> bad(13, good);
   bad[0].range_m.pop_back();
   bad[1].range_m[2] = -1.0f;
   bad[2].range_m[2] = -kInf;
@@ -164,8 +198,23 @@ TEST(MapBuilder, ImagesThatCannotBeRightLeaveTheMapAlone) {
   bad[8].rays.row_sin[0] = 0.5;
   bad[9].limits.max_m = kInf;
   bad[10].rays.column_cos.pop_back();
+  bad[11].world_from_sensor(0, 0) = -1.0;  // a mirror
+  bad[12].world_from_sensor(0, 0) = 1.0001;
   for (const RangeImage& image : bad) EXPECT_THROW(builder.fold(image), std::invalid_argument);
   EXPECT_EQ(builder.digest(), digest);
+}
+
+TEST(MapBuilder, SinesAndRotationsMayBeThoseOf32BitFloats) {
+  RangeImage image = looking_along_y({3.0f, 3.0f, 3.0f, 3.0f});
+  const Eigen::Matrix3d rotation = world_from_sensor_rotation(0.7, -0.4);
+  image.world_from_sensor = rotation.cast<float>().cast<double>();
+  for (std::size_t i = 0; i < 2; ++i) {
+    image.rays.column_sin[i] = static_cast<double>(std::sin(0.3f));
+    image.rays.column_cos[i] = static_cast<double>(std::cos(0.3f));
+  }
+  ASSERT_NE(image.world_from_sensor, rotation);
+  MapBuilder builder(metre_grid(), {{-4, -4, -4}, {9, 9, 9}});
+  EXPECT_EQ(builder.fold(image).points, 4);
 }
 
 struct Room {

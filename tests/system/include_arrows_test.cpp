@@ -25,7 +25,7 @@ struct Arrows {
   Folders bus;
 };
 const std::map<std::string, Arrows> kArrows = {
-    {"lcmtypes", {{}, {}}},
+    {"lcmtypes", {{}, {"sensor"}}},
     {"sensor", {{}, {}}},
     {"scene", {{}, {}}},
     {"sensor_sim", {{"sensor", "scene"}, {}}},
