@@ -86,9 +86,10 @@ std::string collision(const Scene& scene, double body_radius_m, const Eigen::Vec
         scene.clearance_m(a_m, a_m + middle * (b_m - a_m), body_radius_m) < body_radius_m;
     (touches ? touching_at : free_to) = middle;
   }
-  return "the body would touch a surface at " + place(a_m + touching_at * (b_m - a_m)) +
-         " on the way from " + place(a_m) + " to " + place(b_m) + ", which leaves " +
-         metres(clearance_m) + " m of the " + metres(body_radius_m) + " m it needs";
+  return std::string(kCollision) + "the body would touch a surface at " +
+         place(a_m + touching_at * (b_m - a_m)) + " on the way from " + place(a_m) + " to " +
+         place(b_m) + ", which leaves " + metres(clearance_m) + " m of the " +
+         metres(body_radius_m) + " m it needs";
 }
 
 void check(const BaseLimits& limits) {
@@ -186,8 +187,7 @@ std::string Base::refusal_of(std::span<const Eigen::Vector3d> waypoints_m,
            " m from the goal " + place(goal.position_m);
   }
   for (std::size_t i = 1; i < waypoints_m.size(); ++i) {
-    std::string why =
-        collision(*scene_, limits_.body_radius_m, waypoints_m[i - 1], waypoints_m[i]);
+    std::string why = collision(*scene_, limits_.body_radius_m, waypoints_m[i - 1], waypoints_m[i]);
     if (!why.empty()) {
       return why;
     }

@@ -4,6 +4,7 @@
 #include <numbers>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "scene/scene.h"
 #include "sensor/sensor_pose.h"
@@ -21,6 +22,9 @@ struct BaseLimits {
   double turn_speed_rad_s = std::numbers::pi / 4.0;  ///< of pan and of tilt
   double body_radius_m = 0.20;                       ///< a sphere about the sensor
 };
+
+/// What a refusal begins with when the body would have touched something; other bases' too.
+inline constexpr std::string_view kCollision = "collision: ";
 
 /// How a motion ended. When it was refused the robot has not moved at all.
 struct Motion {

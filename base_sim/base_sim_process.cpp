@@ -44,13 +44,20 @@ BaseSimProcess::BaseSimProcess(Bus& bus, const run_config_t& config)
     : bus_(bus),
       scene_(load_scene(config)),
       base_(base_limits_of(config), start_pose_of(config), scene_) {
-  bus_.on<goal_t>([this](const goal_t& goal) { goals_.push_back(goal); });
+  bus_.on<goal_t>([this](const goal_t& goal) { goals_[key_of(goal)] = goal; });
 }
 
 bool BaseSimProcess::step() {
-  if (goals_.empty()) return false;
-  const goal_t goal = goals_.front();
-  goals_.pop_front();
+  // Where the base is depends on every goal before, so they are carried out in order, whatever the
+  // order they come in. A base that was restarted in mid-run asks for the first ones again, gets
+  // to the same place and says the same of them as before.
+  const auto found = goals_.find(next_);
+  if (found == goals_.end()) {
+    if (!goals_.empty() && asked_for_ != next_) ask_again();
+    return false;
+  }
+  const goal_t goal = found->second;
+  goals_.erase(found);
 
   std::vector<Eigen::Vector3d> waypoints_m;
   for (const auto& waypoint : goal.waypoint_m) waypoints_m.emplace_back(waypoint.data());
@@ -61,7 +68,16 @@ bool BaseSimProcess::step() {
   bus_.publish(arrival_message(goal, motion));
   bus_.publish(
       timing_message(bus_.role(), goal.utime, goal.view, goal.attempt, {{"move", wall.count()}}));
+  next_ = motion.arrived ? MessageKey{.view = goal.view + 1, .attempt = 1}
+                         : MessageKey{.view = goal.view, .attempt = goal.attempt + 1};
   return true;
+}
+
+void BaseSimProcess::ask_again() {
+  goals_.erase(goals_.begin(), goals_.lower_bound(next_));  // of attempts that are over
+  if (goals_.empty()) return;  // nobody has gone on to a later goal: there is none to ask for
+  bus_.request<goal_t>(next_.view, next_.attempt);
+  asked_for_ = next_;
 }
 
 void BaseSimProcess::on_missing(const request_t& request) {

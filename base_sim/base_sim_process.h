@@ -1,6 +1,6 @@
 #pragma once
 
-#include <deque>
+#include <map>
 #include <optional>
 
 #include "base_sim/base.h"
@@ -21,13 +21,17 @@ class BaseSimProcess : public BusProcess {
 
   /// Moves to the next goal.
   bool step() override;
+  /// Asks for the next goal, when later ones have come.
+  void ask_again() override;
   void on_missing(const request_t& request) override;
 
  private:
   Bus& bus_;
   Scene scene_;
   Base base_;
-  std::deque<goal_t> goals_;
+  std::map<MessageKey, goal_t> goals_;  ///< still to be carried out
+  MessageKey next_{.view = 1, .attempt = 1};
+  MessageKey asked_for_;
 };
 
 }  // namespace nextview

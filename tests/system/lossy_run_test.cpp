@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <iostream>
+#include <optional>
 
 #include "base_sim/base_sim_process.h"
 #include "mapper/mapper_process.h"
@@ -39,7 +40,7 @@ class SimulatedRun {
       : network_(faults, seed) {
     const run_config_t config = boxes_config();
     add<PlannerProcess>("planner", config);
-    add<BaseSimProcess>("base_sim", config);
+    add<BaseSimProcess>("base_sim", config);  // at kBase
     add<SensorSimProcess>("sensor_sim", config);
     add<MapperProcess>("mapper", config);
   }
@@ -53,6 +54,10 @@ class SimulatedRun {
     constexpr int kPatience = 2000;
     for (int asked = 0; asked < kPatience; ++asked) {
       while (turn() || watcher.handle(milliseconds(0))) {
+        if (restart_after_ && std::ssize(commits) == *restart_after_) {
+          restart_after_.reset();
+          start<BaseSimProcess>(kBase, "base_sim", boxes_config());
+        }
       }
       for (auto& process : processes_) process->ask_again();  // everybody's timer is due
       if (outcome.stop_reason.empty()) {
@@ -70,15 +75,27 @@ class SimulatedRun {
     }
     return outcome;
   }
+  /// Puts a new base in the place of the one there is, which forgets everything, as soon as the
+  /// mapper has committed so many views.
+  void restart_base_after(int views) { restart_after_ = views; }
   int lost() const { return network_.lost(); }
 
  private:
+  static constexpr std::size_t kBase = 1;
+
   template <class Process>
   void add(const std::string& role, const run_config_t& config) {
-    buses_.push_back(std::make_unique<Bus>(network_.connect(), 7, role));
-    processes_.push_back(std::make_unique<Process>(*buses_.back(), config));
-    BusProcess* process = processes_.back().get();
-    buses_.back()->on_missing(
+    buses_.emplace_back();
+    processes_.emplace_back();
+    start<Process>(processes_.size() - 1, role, config);
+  }
+  template <class Process>
+  void start(std::size_t place, const std::string& role, const run_config_t& config) {
+    processes_[place].reset();
+    buses_[place] = std::make_unique<Bus>(network_.connect(), 7, role);
+    processes_[place] = std::make_unique<Process>(*buses_[place], config);
+    BusProcess* process = processes_[place].get();
+    buses_[place]->on_missing(
         [process](const request_t& request) { process->on_missing(request); });
   }
   // One piece of everybody's work; false when all wait.
@@ -92,6 +109,7 @@ class SimulatedRun {
   }
 
   LossyNetwork network_;
+  std::optional<int> restart_after_;
   std::vector<std::unique_ptr<Bus>> buses_;
   std::vector<std::unique_ptr<BusProcess>> processes_;
 };
@@ -109,6 +127,18 @@ TEST(LossyRun, GoesTheSameWayWhateverTheBusLoses) {
   }
   EXPECT_GT(lost, 100);
   std::cout << lost << " messages lost in 5 runs\n";
+}
+
+TEST(LossyRun, GoesTheSameWayWhenTheBaseIsStartedAgain) {
+  const Outcome undisturbed = SimulatedRun({}, 1).finish();
+  for (int views : {1, 4, 7}) {
+    SimulatedRun run({}, 1);
+    run.restart_base_after(views);
+    EXPECT_EQ(run.finish(), undisturbed) << "after view " << views;
+  }
+  SimulatedRun lossy({.loss = 0.2, .repeat = 0.2, .overtake = 0.2}, 3);
+  lossy.restart_base_after(5);
+  EXPECT_EQ(lossy.finish(), undisturbed);
 }
 
 }  // namespace
