@@ -76,12 +76,30 @@ Eigen::Matrix4d world_from_root(const aiScene& scene, const std::string& reader,
   return z_up_from(options.up.value_or(up_of_format)) * scaling(options.unit_m.value_or(1.0));
 }
 
+// Coordinates as assimp has them are floats, which up to here tell millimetres apart. Beyond, the
+// model has lost detail before any code of ours sees it, so that no shift could bring it back.
+constexpr double kFarthest_m = 8192.0;
+
+void check_range(const Eigen::Vector3d& given_m, const Eigen::Vector3d& world_m,
+                 const std::filesystem::path& file) {
+  const double far_m = std::max(given_m.cwiseAbs().maxCoeff(), world_m.cwiseAbs().maxCoeff());
+  if (!std::isfinite(far_m) || far_m <= kFarthest_m) return;  // not finite: said of the triangle
+  throw SceneError(file.string() + ": a vertex lies " + std::to_string(std::llround(far_m)) +
+                   " m from the origin, where coordinates are no longer exact to a millimetre (" +
+                   std::to_string(std::llround(kFarthest_m)) +
+                   " m at most): move the model to the origin in the program it comes from and "
+                   "export it again, or give the right --unit");
+}
+
 void add_mesh(const aiMesh& mesh, const Eigen::Matrix4d& world_from_mesh,
               const std::filesystem::path& file, Shapes& shapes) {
   const auto first = static_cast<std::uint32_t>(shapes.vertices_m.size());
+  const double scale = world_from_mesh.topLeftCorner<3, 3>().colwise().norm().maxCoeff();
   for (unsigned int i = 0; i < mesh.mNumVertices; ++i) {
     const aiVector3D& p = mesh.mVertices[i];
-    const Eigen::Vector4d vertex_m = world_from_mesh * Eigen::Vector4d(p.x, p.y, p.z, 1.0);
+    const Eigen::Vector3d given(p.x, p.y, p.z);
+    const Eigen::Vector4d vertex_m = world_from_mesh * given.homogeneous();
+    check_range(scale * given, vertex_m.head<3>(), file);
     shapes.vertices_m.push_back(vertex_m.head<3>().cast<float>());
   }
   for (unsigned int i = 0; i < mesh.mNumFaces; ++i) {

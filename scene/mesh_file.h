@@ -38,8 +38,8 @@ struct SceneOptions {
 /// Points and lines, triangles of no area and exact duplicates (the same three corners in any order
 /// of them) are left out. Y up becomes z up by the rotation (x, y, z) -> (x, -z, y), x up by
 /// (x, y, z) -> (-y, -z, x), as COLLADA has it.
-/// @throws SceneError when there is no such file, assimp cannot read it, it has no triangles or a
-/// coordinate is not finite
+/// @throws SceneError when there is no such file, assimp cannot read it, it has no triangles, or a
+/// coordinate is not finite or so large that a float no longer tells millimetres apart
 TriangleMesh load_mesh(const std::filesystem::path& file, const SceneOptions& options = {});
 
 }  // namespace nextview

@@ -1,6 +1,9 @@
 #include "scene/mesh_file.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
+#include <filesystem>
+#include <fstream>
 
 #include <algorithm>
 #include <cmath>
@@ -133,6 +136,29 @@ TEST(LoadMesh, LeavesOutDuplicatesAndTrianglesOfNoArea) {
     const Eigen::Vector3d a = untidy.corner_m(i, 0);
     EXPECT_GT((untidy.corner_m(i, 1) - a).cross(untidy.corner_m(i, 2) - a).norm(), 0.1) << i;
   }
+}
+
+TEST(LoadMesh, RefusesWhatLiesSoFarOffThatFloatsAreTooCoarse) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() /
+      ("nextview-georeferenced-" + std::to_string(::getpid()) + ".obj");
+  const auto load_at = [&file](const std::string& easting, const SceneOptions& options) {
+    std::ofstream(file) << "v " << easting << " 0 0\nv " << easting << " 1 0\nv " << easting
+                        << " 0 1\nf 1 2 3\n";
+    return load_mesh(file, options);
+  };
+  EXPECT_EQ(load_at("8192", {}).triangles.size(), 1U);
+  EXPECT_EQ(load_at("500000", {.unit_m = 0.01}).triangles.size(), 1U);
+  for (const SceneOptions& options : {SceneOptions{}, SceneOptions{.unit_m = 100.0}}) {
+    try {
+      load_at("500000.25", options);
+      ADD_FAILURE() << "was loaded";
+    } catch (const SceneError& error) {
+      EXPECT_NE(std::string(error.what()).find("move the model to the origin"), std::string::npos)
+          << error.what();
+    }
+  }
+  std::filesystem::remove(file);
 }
 
 TEST(MeshDigest, IsThatOfTheTrianglesAndFixed) {
