@@ -8,6 +8,9 @@ fail() {
   exit 1
 }
 
+# A freshly booted machine installs its updates first.
+apt_patience_s=600
+
 # install_missing LIST...: the packages of these lists, of which as a rule all are there.
 install_missing() {
   local packages missing
@@ -27,12 +30,13 @@ install_missing() {
       fail "Packages are missing. As root, type: apt-get install ${missing[*]}"
     as_root=(sudo)
   fi
-  echo "Installing ${missing[*]}"
-  "${as_root[@]}" apt-get -qq update &&
+  echo "Installing ${missing[*]} (waits up to $apt_patience_s s while another apt is at work)"
+  "${as_root[@]}" apt-get -qq update > "$install_log" 2>&1 &&
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-      apt-get -qq install --no-install-recommends "${missing[@]}" > "$install_log" 2>&1 || {
+      apt-get -qq -o DPkg::Lock::Timeout="$apt_patience_s" install --no-install-recommends "${missing[@]}" > "$install_log" 2>&1 || {
     cat "$install_log" >&2
-    fail "Packages could not be installed. Type: apt-get install ${missing[*]}"
+    fail "Packages could not be installed. If another apt is still at work, wait for it; then type:" \
+      "apt-get install ${missing[*]}"
   }
 }
 install_log=$(mktemp)
