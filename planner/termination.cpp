@@ -8,10 +8,10 @@ namespace nextview {
 
 namespace {
 
-constexpr std::array<StopReason, 8> kStopReasons = {
+constexpr std::array<StopReason, 9> kStopReasons = {
     StopReason::NothingNew,     StopReason::QualityReached, StopReason::ViewLimit,
     StopReason::NoFeasibleGoal, StopReason::DigestMismatch, StopReason::NoAnswer,
-    StopReason::ProcessDied,    StopReason::Interrupted};
+    StopReason::ProcessDied,    StopReason::BusFailed,      StopReason::Interrupted};
 
 bool nothing_new(std::span<const ViewFacts> views, const StopParameters& parameters) {
   const auto window = static_cast<std::size_t>(parameters.stop_window_views);
@@ -41,6 +41,8 @@ std::string_view to_string(StopReason reason) {
       return "no_answer";
     case StopReason::ProcessDied:
       return "process_died";
+    case StopReason::BusFailed:
+      return "bus_failed";
     case StopReason::Interrupted:
       return "interrupted";
   }
@@ -70,6 +72,8 @@ std::string_view describe(StopReason reason) {
       return "A process did not answer, however often it was asked.";
     case StopReason::ProcessDied:
       return "A process ended before the run did.";
+    case StopReason::BusFailed:
+      return "The bus broke down.";
     case StopReason::Interrupted:
       return "The run was interrupted by a signal.";
   }

@@ -17,7 +17,8 @@ enum class StopReason {
   DigestMismatch,  ///< planner and mapper hold different maps
   NoAnswer,        ///< somebody did not answer, however often asked
   ProcessDied,     ///< a process of the run ended before the run did
-  Interrupted,     ///< SIGINT or SIGTERM
+  BusFailed,       ///< messages could be sent or received no more
+  Interrupted,     ///< SIGINT, SIGTERM or SIGHUP
 };
 
 /// All reasons, in order.

@@ -139,11 +139,13 @@ void write_summary(std::ostream& out, const FinishedRun& run) {
   json["stop_detail"] = run.stop_detail;
   json["surface_coverage"] =
       last && last->surface_coverage ? Json(*last->surface_coverage) : Json(nullptr);
+  if (!run.coverage_unknown.empty()) json["surface_coverage_unknown"] = run.coverage_unknown;
   json["mean_quality"] = last ? last->commit.mean_quality : 0.0;
   json["occupied_area_m2"] = last ? last->commit.occupied_area_m2 : 0.0;
   json["occlusion_plane_area_m2"] = last ? last->commit.occlusion_plane_area_m2 : 0.0;
   json["path_length_m"] = path_length_m(run);
   json["collisions"] = run.collisions;
+  json["other_refusals"] = run.other_refusals;
   json["simulated_s"] = last ? static_cast<double>(last->commit.utime) * 1e-6 : 0.0;
   json["plan_s_median"] = median_s(run, kStages[0]);
   json["wall_s"] = run.wall_s;
@@ -177,7 +179,8 @@ void write_summary(std::ostream& out, const FinishedRun& run) {
   json["versions"] = {{"nextview", run.config.program_version},
                       {"compiler", NEXTVIEW_COMPILER},
                       {"lcm", NEXTVIEW_LCM_VERSION}};
-  out << json.dump(2) << '\n';
+  // A file's name may be any bytes; those that are no UTF-8 become U+FFFD.
+  out << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
 void write_table(std::ostream& out, const FinishedRun& run) {
@@ -191,10 +194,13 @@ void write_table(std::ostream& out, const FinishedRun& run) {
   if (last.surface_coverage) {
     line("surface coverage", format("%.3f of %.1f m2 that can be seen", *last.surface_coverage,
                                     run.visible ? run.visible->area_m2() : 0.0));
+  } else {
+    line("surface coverage", "unknown, because " + run.coverage_unknown);
   }
   line("mean quality", format("%.3f", last.commit.mean_quality));
   line("occupied area", format("%.1f m2", last.commit.occupied_area_m2));
   line("path, collisions", format("%.1f m, %d", path_length_m(run), run.collisions));
+  if (run.other_refusals > 0) line("other refusals", std::to_string(run.other_refusals));
   std::string medians;
   for (const Stage& stage : kStages) {
     medians +=

@@ -19,10 +19,12 @@ struct FinishedRun {
   std::string stop_reason;  ///< as the log names it
   std::string stop_detail;
   std::vector<ViewRow> rows;
-  int collisions = 0;  ///< goals the base refused
+  int collisions = 0;      ///< goals the base refused because its body would have touched something
+  int other_refusals = 0;  ///< goals it refused for another reason
   std::optional<VisibleSurface> visible;
-  double wall_s = 0.0;                                    ///< from the start of the program
-  double start_up_s = 0.0;                                ///< from there to the first goal
+  std::string coverage_unknown;  ///< why there is no surface coverage; empty when there is
+  double wall_s = 0.0;           ///< from the start of the program
+  double start_up_s = 0.0;       ///< from there to the first goal
   double first_goal_to_last_commit_s = 0.0;               ///< as seen on the bus
   std::map<std::string, std::int64_t> peak_memory_bytes;  ///< by role
   std::map<std::string, status_t> statuses;               ///< by role, as last heard

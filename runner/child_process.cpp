@@ -26,6 +26,14 @@ std::system_error last_error(const std::string& what) {
   return {errno, std::generic_category(), what};
 }
 
+/// A system call, again for as long as a signal interrupts it.
+template <class Call>
+auto uninterrupted(const Call& call) {
+  auto result = call();
+  while (result < 0 && errno == EINTR) result = call();
+  return result;
+}
+
 struct Pipe {
   FileDescriptor read;
   FileDescriptor write;
@@ -47,7 +55,7 @@ Pipe make_pipe(int flags) {
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
-  for (const int number : {SIGINT, SIGTERM, SIGPIPE}) ::signal(number, SIG_DFL);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) ::signal(number, SIG_DFL);
   const int nothing = ::open("/dev/null", O_RDONLY);
   ::dup2(nothing, STDIN_FILENO);
   ::dup2(output, STDOUT_FILENO);
@@ -77,8 +85,10 @@ ChildProcess::ChildProcess(std::string role, const std::vector<std::string>& arg
   }
   report.write.reset();
   int error = 0;
-  if (::read(report.read.get(), &error, sizeof error) == sizeof error) {
-    ::waitpid(std::exchange(pid_, -1), nullptr, 0);
+  if (uninterrupted([&] { return ::read(report.read.get(), &error, sizeof error); }) ==
+      sizeof error) {
+    uninterrupted([&] { return ::waitpid(pid_, nullptr, 0); });
+    pid_ = -1;
     throw std::system_error(error, std::generic_category(), "cannot start " + arguments[0]);
   }
   output_ = std::move(output.read);
@@ -89,7 +99,7 @@ ChildProcess::~ChildProcess() {
   if (pid_ < 0 || wait_status_) return;
   if (!output_) return;  // moved from
   ::kill(pid_, SIGKILL);
-  ::waitpid(pid_, nullptr, 0);
+  uninterrupted([&] { return ::waitpid(pid_, nullptr, 0); });
 }
 
 bool ChildProcess::running() {
@@ -119,14 +129,17 @@ void ChildProcess::terminate(double patience_s) {
   if (!running()) return;
   ::kill(pid_, SIGKILL);
   int status = 0;
-  if (::wait4(pid_, &status, 0, &usage_) == pid_) wait_status_ = status;
+  if (uninterrupted([&] { return ::wait4(pid_, &status, 0, &usage_); }) == pid_) {
+    wait_status_ = status;
+  }
   read_output();
 }
 
 void ChildProcess::read_output() {
   char buffer[4096];
   for (;;) {
-    const ssize_t count = ::read(output_.get(), buffer, sizeof buffer);
+    const ssize_t count =
+        uninterrupted([&] { return ::read(output_.get(), buffer, sizeof buffer); });
     if (count <= 0) return;  // nothing more for now, or the end
     partial_line_.append(buffer, static_cast<std::size_t>(count));
     for (std::size_t end; (end = partial_line_.find('\n')) != std::string::npos;) {

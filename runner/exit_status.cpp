@@ -18,6 +18,8 @@ int exit_status(StopReason reason) {
       return 5;
     case StopReason::ProcessDied:
       return 6;
+    case StopReason::BusFailed:
+      return 7;
     case StopReason::Interrupted:
       return 130;
   }

@@ -5,9 +5,11 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <exception>
 #include <random>
 #include <utility>
 
+#include "base_sim/base.h"
 #include "runner/run_signals.h"
 #include "scoring/visible_surface.h"
 #include "sensor/sensor_config.h"
@@ -30,6 +32,11 @@ std::int64_t new_run_number() {
 /// Looking on and scoring must not take time from the processes that do the work: on two cores the
 /// share of a run that is waiting falls by a quarter.
 void give_way() { setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 15); }
+
+/// Whether all of these roles are among those heard of. Others may take part too: a viewer, say.
+bool all_of(const std::set<std::string>& roles, const std::set<std::string>& heard_of) {
+  return std::includes(heard_of.begin(), heard_of.end(), roles.begin(), roles.end());
+}
 
 /// Asks for something again and again, ever less often.
 class Reminder {
@@ -72,6 +79,9 @@ FinishedRun Run::carry_out(Clock::time_point program_start) {
     collect_statuses();
   } catch (const EndsEarly& end) {
     end_early(end);
+  } catch (const BusError& error) {
+    if (!record_.config()) throw;  // nothing has begun
+    end_early({StopReason::BusFailed, error.what()});
   }
   return finish(program_start);
 }
@@ -135,13 +145,13 @@ void Run::start_up() {
   last_progress_ = Clock::now();
   const std::set<std::string> answering(RunProcesses::answering_roles().begin(),
                                         RunProcesses::answering_roles().end());
-  pump_until([&] { return recording() && asked_for_config_ == answering; });
+  pump_until([&] { return recording() && all_of(answering, asked_for_config_); });
   record_.add(setup_.config);
   bus_->publish(setup_.config);
   last_progress_ = Clock::now();
   if (!options_.no_coverage) start_scoring();
   // Each says so when it has loaded what it needs; only then is there somebody to hear a goal.
-  pump_until([&] { return fresh_statuses_ == answering; });
+  pump_until([&] { return all_of(answering, fresh_statuses_); });
   processes_->start_planner();
   last_progress_ = Clock::now();
 }
@@ -160,8 +170,12 @@ void Run::start_scoring() {
   scoring_ = std::jthread([scene = setup_.scene, config = setup_.config,
                            promise = std::move(promise)](const std::stop_token& stop) mutable {
     give_way();
-    promise.set_value(visible_surface(*scene, start_pose_of(config).position_m, reach_of(config),
-                                      config.sensor.range_max_m, stop));
+    try {
+      promise.set_value(visible_surface(*scene, start_pose_of(config).position_m, reach_of(config),
+                                        config.sensor.range_max_m, stop));
+    } catch (...) {
+      promise.set_exception(std::current_exception());
+    }
   });
 }
 
@@ -188,8 +202,12 @@ void Run::watch() {
 void Run::make_rows() {
   if (!visible_ && visible_coming_.valid() &&
       visible_coming_.wait_for(milliseconds(0)) == std::future_status::ready) {
-    visible_ = visible_coming_.get();
-    rows_.set_visible(*visible_);
+    try {
+      visible_ = visible_coming_.get();
+      rows_.set_visible(*visible_);
+    } catch (const std::exception& error) {
+      coverage_unknown_ = std::string("it could not be worked out: ") + error.what();
+    }
   }
   while (const ViewRow* row = rows_.advance(record_)) progress_.show(*row);
 }
@@ -224,8 +242,10 @@ void Run::collect_statuses() {
   bus_->request<status_t>(0, 0);
   // Only for the summary, so a process that does not answer is not waited for very long.
   const auto until = Clock::now() + milliseconds(1000);
-  const std::size_t roles = RunProcesses::answering_roles().size() + 1;  // and the planner
-  while (fresh_statuses_.size() < roles && Clock::now() < until) {
+  std::set<std::string> roles(RunProcesses::answering_roles().begin(),
+                              RunProcesses::answering_roles().end());
+  roles.insert("planner");
+  while (!all_of(roles, fresh_statuses_) && Clock::now() < until) {
     pump(milliseconds(5));
     if (reminder.due()) bus_->request<status_t>(0, 0);
   }
@@ -236,7 +256,9 @@ void Run::end_early(const EndsEarly& end) {
   if (!processes_ || !bus_) return;
   processes_->end_planner();
   try {
-    while (bus_->handle(milliseconds(20))) {
+    // What was under way still counts; somebody who never falls silent is not waited for.
+    const auto drained_by = Clock::now() + milliseconds(1000);
+    while (bus_->handle(milliseconds(20)) && Clock::now() < drained_by) {
     }
     make_rows();
     if (record_.stop() || !log_ || !record_.config()) return;
@@ -287,10 +309,18 @@ FinishedRun Run::finish(Clock::time_point program_start) {
   run.config = setup_.config;
   run.rows = rows_.rows();
   run.visible = visible_;
+  run.coverage_unknown = coverage_unknown_;
+  if (options_.no_coverage) run.coverage_unknown = "--no-coverage was given";
+  if (!visible_ && run.coverage_unknown.empty()) {
+    run.coverage_unknown = "the run ended before it was worked out";
+  }
   run.statuses = statuses_;
   run.lcm_url = lcm_url_;
   if (log_) run.log = log_->counters();
-  for (const auto& [key, arrival] : record_.arrivals()) run.collisions += arrival.arrived ? 0 : 1;
+  for (const auto& [key, arrival] : record_.arrivals()) {
+    if (arrival.arrived) continue;
+    ++(arrival.refusal.starts_with(kCollision) ? run.collisions : run.other_refusals);
+  }
   if (ended_early_) {
     run.stop_reason = to_string(ended_early_->reason);
     run.stop_detail = ended_early_->detail;

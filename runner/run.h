@@ -87,6 +87,7 @@ class Run {
 
   std::future<VisibleSurface> visible_coming_;
   std::optional<VisibleSurface> visible_;
+  std::string coverage_unknown_;  ///< why, when it cannot be worked out
   std::jthread scoring_;
 };
 

@@ -62,6 +62,8 @@ int run(const nextview::RunOptions& options, nextview::Run::Clock::time_point st
   nextview::RunSetup setup = nextview::prepare_run(options);
   const std::filesystem::path folder = make_folder(options, setup.config.scene_name);
   const ArtefactFiles files(folder);
+  // Not before: a CAD file may take for ever to read, and until here there is nothing to save.
+  nextview::note_signals();
   using Style = nextview::Progress::Style;
   nextview::Progress progress(std::cout, ::isatty(STDOUT_FILENO) ? Style::Bar : Style::Lines,
                               setup.config.planner.max_views);
@@ -89,7 +91,6 @@ int main(int argc, char** argv) {
   int exit_status = 0;
   const auto options = nextview::parse_run_options(argc, argv, exit_status);
   if (!options) return exit_status;
-  nextview::note_signals();
   std::signal(SIGPIPE, SIG_IGN);
   try {
     return run(*options, start);

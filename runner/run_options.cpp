@@ -266,8 +266,8 @@ std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_sta
       "  ./run hall.stl --unit cm --up y --start 4 4 1.5 --voxel-size 0.05\n\n"
       "Exit status: 0 the stop rule or the number of views was reached; 1 the run could not\n"
       "start; 3 no feasible goal; 4 mapper and planner hold different maps; 5 somebody did not\n"
-      "answer; 6 a process died; 130 or 143 ended by SIGINT or SIGTERM, the log being readable;\n"
-      "above 100 otherwise: a wrong command line.");
+      "answer; 6 a process died; 7 the bus broke down; 130, 143 or 129 ended by SIGINT, SIGTERM\n"
+      "or SIGHUP, the log being readable; above 100 otherwise: a wrong command line.");
   app.set_version_flag("--version", "nextview_run " + std::string(program_version()));
   app.get_formatter()->column_width(30);
   add_scene_options(app, options);

@@ -1,6 +1,7 @@
 #include "runner/run_signals.h"
 
 #include <csignal>
+#include <initializer_list>
 
 namespace nextview {
 namespace {
@@ -14,8 +15,12 @@ void note(int number) { noted = number; }
 void note_signals() {
   struct sigaction action {};
   action.sa_handler = note;  // without SA_RESTART
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) {
+    struct sigaction before {};
+    sigaction(number, nullptr, &before);
+    if (before.sa_handler == SIG_IGN) continue;  // as nohup has it
+    sigaction(number, &action, nullptr);
+  }
 }
 
 int noted_signal() { return noted; }

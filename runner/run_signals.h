@@ -2,7 +2,8 @@
 
 namespace nextview {
 
-/// From now on SIGINT and SIGTERM are only noted, and waits are interrupted by them.
+/// From now on SIGINT, SIGTERM and SIGHUP are only noted, and waits are interrupted by them; what
+/// is ignored already stays so.
 void note_signals();
 /// The signal that was noted, or 0.
 int noted_signal();

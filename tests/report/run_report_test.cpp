@@ -131,6 +131,39 @@ TEST(Summary, OfARunWithoutViewsIsWholeToo) {
   EXPECT_TRUE(json.at("surface_coverage").is_null());
 }
 
+TEST(Summary, OfASceneWhoseNameIsNoUtf8IsJson) {
+  FinishedRun run = two_views();
+  run.config.scene_file = "/home/fran\xe7ois/salle.obj";
+  std::ostringstream out;
+  write_summary(out, run);
+  EXPECT_EQ(nlohmann::json::parse(out.str()).at("scene_file"),
+            "/home/fran\xef\xbf\xbdois/salle.obj");
+}
+
+TEST(Summary, SaysWhyThereIsNoCoverage) {
+  FinishedRun run = two_views();
+  run.rows.back().surface_coverage.reset();
+  run.coverage_unknown = "nobody looked";
+  std::ostringstream out;
+  write_summary(out, run);
+  const auto json = nlohmann::json::parse(out.str());
+  EXPECT_TRUE(json.at("surface_coverage").is_null());
+  EXPECT_EQ(json.at("surface_coverage_unknown"), "nobody looked");
+  std::ostringstream table;
+  write_table(table, run);
+  EXPECT_NE(table.str().find("unknown, because nobody looked"), std::string::npos) << table.str();
+}
+
+TEST(Summary, CountsCollisionsApartFromOtherRefusals) {
+  FinishedRun run = two_views();
+  run.collisions = 1;
+  run.other_refusals = 2;
+  std::ostringstream out;
+  write_summary(out, run);
+  EXPECT_EQ(nlohmann::json::parse(out.str()).at("collisions"), 1);
+  EXPECT_EQ(nlohmann::json::parse(out.str()).at("other_refusals"), 2);
+}
+
 TEST(Progress, IsOneLineAView) {
   std::ostringstream out;
   Progress progress(out, Progress::Style::Lines, 2);

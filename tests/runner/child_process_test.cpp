@@ -4,6 +4,7 @@
 #include <poll.h>
 #include <signal.h>
 #include <sys/syscall.h>
+#include <sys/time.h>
 #include <unistd.h>
 
 #include <system_error>
@@ -119,6 +120,27 @@ TEST(ChildProcess, TellsHowMuchMemoryItHeld) {
 TEST(ChildProcess, ThatIsNotThereIsAnError) {
   EXPECT_THROW(ChildProcess("nobody", {"/no/such/program"}, AtParentsDeath::Kill),
                std::system_error);
+}
+
+TEST(ChildProcess, ThatIsNotThereIsAnErrorWhateverSignalsCome) {
+  struct sigaction ignore {};
+  ignore.sa_handler = [](int) {};  // without SA_RESTART: interrupts every wait
+  struct sigaction before {};
+  sigaction(SIGALRM, &ignore, &before);
+  const itimerval often{{0, 200}, {0, 200}};
+  setitimer(ITIMER_REAL, &often, nullptr);
+  int errors = 0;
+  for (int i = 0; i < 50; ++i) {
+    try {
+      const ChildProcess nobody("nobody", {"/no/such/program"}, AtParentsDeath::Kill);
+    } catch (const std::system_error&) {
+      ++errors;
+    }
+  }
+  const itimerval never{};
+  setitimer(ITIMER_REAL, &never, nullptr);
+  sigaction(SIGALRM, &before, nullptr);
+  EXPECT_EQ(errors, 50);
 }
 
 TEST(FindInPath, FindsPrograms) {

@@ -18,7 +18,7 @@ TEST(ExitStatus, OnlyASuccessExitsWithZero) {
     }
   }
   EXPECT_EQ(successes, 3);
-  EXPECT_EQ(failures.size(), 5u);
+  EXPECT_EQ(failures.size(), 6u);
 }
 
 TEST(ExitStatus, IsTheSameByName) {

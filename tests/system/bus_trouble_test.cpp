@@ -1,5 +1,14 @@
 #include <gtest/gtest.h>
+#include <poll.h>
+#include <signal.h>
+#include <sys/stat.h>
 
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "lcmtypes/bus.h"
+#include "logger/run_log.h"
+#include "runner/port_lock.h"
 #include "tests/system/program.h"
 
 namespace nextview {
@@ -61,6 +70,80 @@ TEST(BusTrouble, WhatTheRecorderMissedIsAskedForAgain) {
   EXPECT_NE(outcome.output.find("forgot "), std::string::npos) << outcome.output;
   const Outcome replay = replay_folder(folder / "run", {"--planner"});
   EXPECT_EQ(replay.status, 0) << replay.output;
+}
+
+/// The number of a run that was started with --verbose.
+std::int64_t number_of(Program& run) {
+  static constexpr std::string_view kBefore = ", run ";
+  EXPECT_TRUE(run.wait_for(kBefore.data())) << run.output();
+  return std::stoll(run.output().substr(run.output().find(kBefore) + kBefore.size()));
+}
+
+TEST(BusTrouble, ThatComesInMidRunLeavesTheArtefacts) {
+  if (!namespaces_permitted()) GTEST_SKIP() << "network namespaces are not permitted here";
+  const TemporaryFolder folder;
+  std::vector<std::string> arguments = {
+      "/usr/bin/env",
+      "unshare",
+      "--net",
+      "sh",
+      "-c",
+      "ip link set lo up && ip route add 224.0.0.0/4 dev lo && exec \"$@\"",
+      "sh"};
+  for (const std::string& argument :
+       run_arguments(folder / "run", 100000, {"--stop-window", "100000", "--verbose"})) {
+    arguments.push_back(argument);
+  }
+  Program run(arguments);
+  const std::int64_t number = number_of(run);
+  ASSERT_TRUE(run.wait_for("view   3/")) << run.output();
+  // All wait for a scan that does not come, and then nobody but the run itself speaks.
+  ::kill(run.child("sensor_sim"), SIGSTOP);
+  RunLog log(folder / "run" / "run.lcmlog", number, RangeImages::OnlyCount);
+  for (log.read_on();
+       !log.record().arrival(log.record().latest_view(), 1) || log.record().missing().empty();
+       log.read_on()) {
+    ::poll(nullptr, 0, 5);
+  }
+  for (const char* role : {"base_sim", "mapper", "planner"}) ::kill(run.child(role), SIGSTOP);
+  ASSERT_EQ(run_program({"/usr/bin/env", "nsenter",
+                         "--net=/proc/" + std::to_string(run.pid()) + "/ns/net", "ip", "route",
+                         "del", "224.0.0.0/4", "dev", "lo"})
+                .status,
+            0);
+  EXPECT_EQ(run.wait(), 7) << run.output();
+  EXPECT_NE(run.output().find("bus_failed: LCM cannot publish"), std::string::npos) << run.output();
+  EXPECT_GE(column_of_views(folder / "run", "view").size(), 3U);
+  std::ifstream summary(folder / "run" / "summary.json");
+  EXPECT_EQ(nlohmann::json::parse(summary).at("stop_reason"), "bus_failed");
+}
+
+TEST(ForeignMember, ThatAsksAndSaysHowItIsDoesNotDisturbARun) {
+  const TemporaryFolder folder;
+  // A recorder that waits until the viewer has spoken, so that the run hears it in starting up.
+  const auto recorder = find_in_path("lcm-logger");
+  ASSERT_TRUE(recorder);
+  std::ofstream(folder / "lcm-logger") << "#!/bin/sh\nread go < " << (folder / "go").string()
+                                       << "\nexec " << *recorder << " \"$@\"\n";
+  std::filesystem::permissions(folder / "lcm-logger", std::filesystem::perms::owner_all);
+  ASSERT_EQ(::mkfifo((folder / "go").c_str(), 0600), 0);
+  const PortLock port = PortLock::acquire();
+  std::vector<std::string> arguments = {"/usr/bin/env", "PATH=" + folder.path().string()};
+  for (const std::string& argument :
+       run_arguments(folder / "run", 3, {"--verbose", "--lcm-url", port.lcm_url()})) {
+    arguments.push_back(argument);
+  }
+  Program run(arguments);
+  Bus viewer(port.lcm_url(), number_of(run), "viewer");
+  viewer.request<run_config_t>(0, 0);
+  status_t status{};
+  status.role = "viewer";
+  viewer.publish(status);
+  std::ofstream(folder / "go") << "go" << std::endl;
+  EXPECT_EQ(run.wait(), 0) << run.output();
+  std::ifstream summary(folder / "run" / "summary.json");
+  EXPECT_TRUE(nlohmann::json::parse(summary).at("messages").contains("viewer"))
+      << "the run has not heard it";
 }
 
 }  // namespace

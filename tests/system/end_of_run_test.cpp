@@ -1,9 +1,12 @@
 #include <gtest/gtest.h>
+#include <poll.h>
 #include <signal.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <sstream>
 
 #include "lcmtypes/bus.h"
 #include "tests/system/program.h"
@@ -52,6 +55,14 @@ TEST_F(LongRun, EndsCleanlyOnSigterm) {
   start();
   run_->signal(SIGTERM);
   EXPECT_EQ(run_->wait(), 143) << run_->output();
+  expect_nothing_left();
+  expect_readable_log("interrupted");
+}
+
+TEST_F(LongRun, EndsCleanlyWhenItsTerminalGoes) {
+  start();
+  run_->signal(SIGHUP);
+  EXPECT_EQ(run_->wait(), 129) << run_->output();
   expect_nothing_left();
   expect_readable_log("interrupted");
 }
@@ -130,6 +141,36 @@ TEST_F(LongRun, NamesAReasonToStopThatItDoesNotKnow) {
   expect_nothing_left();
   std::ifstream file(folder_ / "run" / "summary.json");
   EXPECT_EQ(nlohmann::json::parse(file).at("stop_reason"), "bored");
+}
+
+/// Seconds of CPU time a process has used, or nothing when there is none any more.
+std::optional<double> cpu_s(pid_t pid) {
+  std::ifstream file("/proc/" + std::to_string(pid) + "/stat");
+  std::string text;
+  std::getline(file, text);
+  const std::size_t name_end = text.rfind(')');
+  if (name_end == std::string::npos) return std::nullopt;
+  std::istringstream fields(text.substr(name_end + 1));
+  std::string skipped;
+  for (int i = 0; i < 11; ++i) fields >> skipped;
+  double ticks = 0.0;
+  fields >> ticks;
+  return ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
+}
+
+TEST(Loading, IsEndedBySigint) {
+  const TemporaryFolder folder;
+  // assimp reads it for ever.
+  std::ofstream(folder / "endless.ply") << "ply\nformat ascii 1.0\nelement face\n";
+  Program run(run_arguments(folder / "run", 2,
+                            {(folder / "endless.ply").string(), "--start", "1", "1", "1"}));
+  for (auto used_s = cpu_s(run.pid()); used_s && *used_s < 0.3; used_s = cpu_s(run.pid())) {
+    ::poll(nullptr, 0, 5);
+  }
+  ASSERT_TRUE(cpu_s(run.pid())) << "the file does not hold up the reader any more";
+  run.signal(SIGINT);
+  EXPECT_EQ(run.wait(), 128) << "not ended by the signal";
+  EXPECT_FALSE(std::filesystem::exists(folder / "run"));
 }
 
 }  // namespace
