@@ -1,6 +1,7 @@
 #include "lcmtypes/bus.h"
 
 #include <iostream>
+#include <stdexcept>
 
 #include "lcmtypes/lcm_transport.h"
 
@@ -39,6 +40,28 @@ void Bus::publish_bytes(std::string_view channel, const MessageKey& key, bool re
     to_send = kept->second;
   }
   transport_->publish(channel, to_send);
+}
+
+std::size_t Bus::remembered_bytes() const {
+  std::size_t bytes = 0;
+  for (const auto& [channel, messages] : published_) {
+    for (const auto& [key, message] : messages) bytes += message.size();
+  }
+  return bytes;
+}
+
+void Bus::take_channel(std::string_view channel) {
+  if (!handled_.emplace(channel).second) {
+    throw std::logic_error(role_ + " would handle " + std::string(channel) + " twice");
+  }
+}
+
+void Bus::note_foreign(std::string_view channel, std::int64_t run) {
+  // Once: on a shared port another run would fill the screen.
+  if (++counters_.foreign > 1) return;
+  std::cerr << role_ << ": ignores messages of other runs, such as one on " << channel
+            << " whose run is " << run << ": what belongs to this run must have run = " << run_
+            << std::endl;
 }
 
 void Bus::request_channel(std::string_view channel, int view, int attempt) {

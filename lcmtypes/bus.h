@@ -7,7 +7,6 @@
 #include <memory>
 #include <set>
 #include <span>
-#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -15,16 +14,10 @@
 
 #include "lcmtypes/channels.h"
 #include "lcmtypes/decode.h"
+#include "lcmtypes/rejected_message.h"
 #include "lcmtypes/transport.h"
 
 namespace nextview {
-
-/// Thrown by a handler that finds a well-formed message impossible in its run (an unknown view,
-/// say) and has ignored it. The bus then drops it like any other message that cannot be right.
-class RejectedMessage : public std::runtime_error {
- public:
-  using std::runtime_error::runtime_error;
-};
 
 /// What the bus has seen since the start.
 struct BusCounters {
@@ -37,10 +30,10 @@ struct BusCounters {
 
 /// Typed publish and subscribe for one run, lossless for those who ask.
 ///
-/// Every message is keyed (run, view, attempt, part). What is published is remembered to the end
-/// and sent again, the same bytes, to whoever requests it. Receivers see each key once. Whoever
-/// waits requests again on a timer of its own; nothing else keeps a run whole on a bus that may
-/// lose.
+/// Every message is keyed (run, view, attempt, part). What is published is remembered and sent
+/// again, the same bytes, to whoever requests it, until the publisher forgets it. Receivers see
+/// each key once. Whoever waits requests again on a timer of its own; nothing else keeps a run
+/// whole on a bus that may lose.
 class Bus {
  public:
   /// Joins a run over LCM.
@@ -68,10 +61,24 @@ class Bus {
                   check(message), encode(message));
   }
 
+  /// Forgets what was published of the views before this one: from then on nobody answers for them
+  /// but on_missing's handler, which can have them made and published again.
+  template <class Message>
+  void forget_before(int view) {
+    const auto kept = published_.find(Channel<Message>::name);
+    if (kept == published_.end()) return;
+    kept->second.erase(kept->second.begin(), kept->second.lower_bound({view, 0, 0}));
+  }
+  /// Of all messages remembered.
+  std::size_t remembered_bytes() const;
+
   /// Calls the handler with every message of this run on the type's channel, each key once (status
-  /// messages and requests every time). One handler a type.
+  /// messages, timings and requests every time).
+  /// @throws std::logic_error when the type has a handler already, as request_t always has
+  ///         (on_missing): of two, each key would come to one only
   template <class Message>
   void on(std::function<void(const Message&)> handler) {
+    take_channel(Channel<Message>::name);
     transport_->subscribe(Channel<Message>::name, [this, handler = std::move(handler)](
                                                       std::span<const std::uint8_t> bytes) {
       deliver<Message>(bytes, handler);
@@ -104,6 +111,8 @@ class Bus {
   void request_channel(std::string_view channel, int view, int attempt);
   void answer(const request_t& request);
   void drop(std::string_view channel, std::string_view reason);
+  void take_channel(std::string_view channel);
+  void note_foreign(std::string_view channel, std::int64_t run);
 
   std::unique_ptr<Transport> transport_;
   std::int64_t run_;
@@ -112,6 +121,7 @@ class Bus {
   std::function<void(const request_t&)> missing_;
   std::map<std::string, std::map<MessageKey, std::vector<std::uint8_t>>, std::less<>> published_;
   std::map<std::string, std::set<MessageKey>, std::less<>> seen_;
+  std::set<std::string, std::less<>> handled_;  // channels
 };
 
 template <class Message>
@@ -121,7 +131,7 @@ void Bus::deliver(std::span<const std::uint8_t> bytes,
   const Decoded<Message> decoded = decode_checked<Message>(bytes);
   if (!decoded.message) return drop(channel, decoded.reason);
   if (decoded.message->run != run_) {
-    ++counters_.foreign;
+    note_foreign(channel, decoded.message->run);
     return;
   }
   const MessageKey key = key_of(*decoded.message);

@@ -9,9 +9,11 @@
 #include <exception>
 #include <lcm/lcm-cpp.hpp>
 #include <list>
+#include <stdexcept>
 #include <thread>
 #include <utility>
 
+#include "lcmtypes/channels.h"
 #include "lcmtypes/multicast_probe.h"
 
 namespace nextview {
@@ -45,6 +47,12 @@ class Pacer {
   Clock::time_point messages_until_;
   Clock::time_point bytes_until_;
 };
+
+// Above this LCM cuts a message, its channel's name counted, into fragments, which liblcm up
+// to 1.5.2 puts together without care (README, Limits). So nobody ever sends one.
+constexpr std::size_t kLcmUnfragmentedBytes = 65499;
+constexpr std::size_t kLongestChannelName = 63;
+static_assert(kMaxMessageBytes + kLongestChannelName + 1 < kLcmUnfragmentedBytes);
 
 std::string resolve_url(const std::string& lcm_url) {
   if (!lcm_url.empty()) return lcm_url;
@@ -90,6 +98,10 @@ LcmTransport::LcmTransport(const std::string& lcm_url) {
 LcmTransport::~LcmTransport() = default;
 
 void LcmTransport::publish(std::string_view channel, std::span<const std::uint8_t> bytes) {
+  if (bytes.size() > kMaxMessageBytes) {
+    throw std::logic_error(std::to_string(bytes.size()) + " bytes on " + std::string(channel) +
+                           ": more than a message may have");
+  }
   connection_->pacer.wait_for(bytes.size());
   if (connection_->lcm.publish(std::string(channel), bytes.data(),
                                static_cast<unsigned int>(bytes.size())) != 0) {

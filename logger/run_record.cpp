@@ -30,12 +30,7 @@ std::string describe(const MissingMessage& missing) {
 
 void RunRecord::check_fits(int view, int attempt) const {
   if (!config_) throw RejectedMessage("it came before the run's configuration");
-  if (view > config_->planner.max_views || attempt > config_->planner.max_attempts) {
-    throw RejectedMessage("view " + std::to_string(view) + ", attempt " + std::to_string(attempt) +
-                          " of a run of " + std::to_string(config_->planner.max_views) +
-                          " views, " + std::to_string(config_->planner.max_attempts) +
-                          " attempts each");
-  }
+  check_fits_run(*config_, view, attempt);
 }
 
 void RunRecord::add(const goal_t& goal) {

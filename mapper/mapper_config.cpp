@@ -16,12 +16,7 @@ MapWindow window_of(const run_config_t& config) {
 }
 
 void check_fits_run(const range_image_t& image, const run_config_t& config) {
-  if (image.view > config.planner.max_views || image.attempt > config.planner.max_attempts) {
-    throw RejectedMessage("view " + std::to_string(image.view) + ", attempt " +
-                          std::to_string(image.attempt) + " of a run of " +
-                          std::to_string(config.planner.max_views) + " views, " +
-                          std::to_string(config.planner.max_attempts) + " attempts each");
-  }
+  check_fits_run(config, image.view, image.attempt);
   const VoxelGrid grid = grid_of(config);
   const Eigen::Vector3d position_m(image.position_m);
   // voxel_of is defined near the map only.

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base_sim/base.h"
+#include "lcmtypes/ask_timer.h"
 #include "runner/run_signals.h"
 #include "scoring/visible_surface.h"
 #include "sensor/sensor_config.h"
@@ -38,22 +39,8 @@ bool all_of(const std::set<std::string>& roles, const std::set<std::string>& hea
   return std::includes(heard_of.begin(), heard_of.end(), roles.begin(), roles.end());
 }
 
-/// Asks for something again and again, ever less often.
-class Reminder {
- public:
-  explicit Reminder(milliseconds first) : interval_(first), due_(Run::Clock::now() + first) {}
-  bool due() {
-    const auto now = Run::Clock::now();
-    if (now < due_) return false;
-    interval_ = std::min(2 * interval_, milliseconds(2000));
-    due_ = now + interval_;
-    return true;
-  }
-
- private:
-  milliseconds interval_;
-  Run::Clock::time_point due_;
-};
+/// Waits from first on up to two seconds.
+AskTimer reminder_after(milliseconds first) { return AskTimer(first, milliseconds(2000)); }
 
 }  // namespace
 
@@ -119,7 +106,7 @@ void Run::add(const Message& message) {
 
 template <class Condition>
 void Run::pump_until(const Condition& condition) {
-  Reminder reminder{milliseconds(5)};
+  AskTimer reminder = reminder_after(milliseconds(5));
   while (!condition()) {
     if (reminder.due()) bus_->request<status_t>(0, 0);
     pump(milliseconds(5));
@@ -181,14 +168,14 @@ void Run::start_scoring() {
 
 void Run::watch() {
   give_way();  // from here on this process only looks on
-  Reminder reminder{milliseconds(300)};
+  AskTimer reminder = reminder_after(milliseconds(300));
   auto reminded_since = last_progress_;
   while (!record_.stop() || !record_.missing().empty()) {
     pump(milliseconds(20));
     make_rows();
     if (reminded_since != last_progress_) {
       reminded_since = last_progress_;
-      reminder = Reminder(milliseconds(300));
+      reminder.restart();
     }
     // Most often nothing is lost and somebody works; asking costs little, and else nobody would
     // make good what only this listener has missed.
@@ -215,7 +202,7 @@ void Run::make_rows() {
 void Run::complete_log() {
   // The recorder writes out what it holds when something more comes: the request and its answers.
   bus_->request<status_t>(0, 0);
-  Reminder reminder{milliseconds(20)};
+  AskTimer reminder = reminder_after(milliseconds(20));
   last_progress_ = Clock::now();
   for (;;) {
     const std::int64_t had = log_->counters().ours;
@@ -238,7 +225,7 @@ void Run::complete_log() {
 
 void Run::collect_statuses() {
   fresh_statuses_.clear();
-  Reminder reminder{milliseconds(50)};
+  AskTimer reminder = reminder_after(milliseconds(50));
   bus_->request<status_t>(0, 0);
   // Only for the summary, so a process that does not answer is not waited for very long.
   const auto until = Clock::now() + milliseconds(1000);
@@ -293,7 +280,7 @@ FinishedRun Run::finish(Clock::time_point program_start) {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
   run.peak_memory_bytes["run"] = std::int64_t{usage.ru_maxrss} * 1024;
-  Reminder patience{milliseconds(1000)};
+  AskTimer patience = reminder_after(milliseconds(1000));
   bool explained = false;
   while (visible_coming_.valid() && noted_signal() == 0 && !ended_early_) {
     visible_coming_.wait_for(milliseconds(50));

@@ -1,5 +1,6 @@
 #include "sensor_sim/sensor_sim_process.h"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -10,6 +11,13 @@
 #include "sensor_sim/scan.h"
 
 namespace nextview {
+namespace {
+
+/// Range images are large. Those of the last few views are what is asked for again in a run; an
+/// older one is scanned anew, as its noise depends on seed, view and attempt alone.
+constexpr int kViewsRemembered = 8;
+
+}  // namespace
 
 SensorSimProcess::SensorSimProcess(Bus& bus, const run_config_t& config)
     : bus_(bus),
@@ -17,13 +25,15 @@ SensorSimProcess::SensorSimProcess(Bus& bus, const run_config_t& config)
       scene_(load_scene(config)),
       rays_(make_ray_table(sensor_of(config))) {
   bus_.on<arrival_t>([this](const arrival_t& arrival) {
-    if (arrival.arrived != 0) to_scan_.push_back(arrival);
+    if (arrival.arrived == 0) return;
+    arrivals_.emplace(key_of(arrival), arrival);
+    to_scan_.push_back(key_of(arrival));
   });
 }
 
 bool SensorSimProcess::step() {
   if (to_scan_.empty()) return false;
-  const arrival_t arrival = to_scan_.front();
+  const arrival_t& arrival = arrivals_.at(to_scan_.front());
   to_scan_.pop_front();
 
   const SensorPose pose{Eigen::Vector3d(arrival.true_position_m), arrival.true_pan_rad,
@@ -46,13 +56,22 @@ bool SensorSimProcess::step() {
   }
   bus_.publish(
       timing_message(bus_.role(), utime, arrival.view, arrival.attempt, {{"scan", wall.count()}}));
+  latest_view_ = std::max(latest_view_, arrival.view);
+  bus_.forget_before<range_image_t>(latest_view_ - kViewsRemembered);
   return true;
 }
 
 void SensorSimProcess::on_missing(const request_t& request) {
-  if (request.wanted_channel == Channel<range_image_t>::name) {
-    bus_.request<arrival_t>(request.view, request.attempt);
+  if (request.wanted_channel != Channel<range_image_t>::name) return;
+  bool forgotten = false;
+  for (const auto& [key, arrival] : arrivals_) {
+    if (key.view != request.view || (request.attempt != 0 && key.attempt != request.attempt)) {
+      continue;
+    }
+    forgotten = true;
+    if (std::find(to_scan_.begin(), to_scan_.end(), key) == to_scan_.end()) to_scan_.push_back(key);
   }
+  if (!forgotten) bus_.request<arrival_t>(request.view, request.attempt);
 }
 
 }  // namespace nextview

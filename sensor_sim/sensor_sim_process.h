@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <map>
 
 #include "lcmtypes/bus_process.h"
 #include "scene/scene.h"
@@ -16,6 +17,7 @@ class SensorSimProcess : public BusProcess {
 
   /// Scans at the next arrival.
   bool step() override;
+  /// Scans again when a range image is asked for that the bus has forgotten: the same image.
   void on_missing(const request_t& request) override;
 
  private:
@@ -23,7 +25,9 @@ class SensorSimProcess : public BusProcess {
   run_config_t config_;
   Scene scene_;
   RayTable rays_;
-  std::deque<arrival_t> to_scan_;
+  std::map<MessageKey, arrival_t> arrivals_;  // all of them
+  std::deque<MessageKey> to_scan_;            // of arrivals_
+  int latest_view_ = 0;                       // scanned
 };
 
 }  // namespace nextview

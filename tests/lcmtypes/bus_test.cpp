@@ -157,6 +157,51 @@ TEST_F(BusPair, AHandlerMayRejectAMessageAndIsGivenItAgain) {
   EXPECT_EQ(mapper_.counters().delivered, 1);
 }
 
+TEST_F(BusPair, RefusesASecondHandlerOfAType) {
+  mapper_.on<goal_t>([](const goal_t&) {});
+  EXPECT_THROW(mapper_.on<goal_t>([](const goal_t&) {}), std::logic_error);
+  EXPECT_THROW(mapper_.on<request_t>([](const request_t&) {}), std::logic_error);
+}
+
+TEST_F(BusPair, SaysOnceThatAMessageIsOfAnotherRunAndWhatToSet) {
+  mapper_.on<goal_t>([](const goal_t&) { FAIL(); });
+  const auto driver = network_.connect();
+  goal_t goal = example<goal_t>();
+  goal.run = 0;
+  testing::internal::CaptureStderr();
+  for (goal.view = 1; goal.view <= 3; ++goal.view) driver->publish("NEXTVIEW_GOAL", encode(goal));
+  settle();
+  EXPECT_EQ(testing::internal::GetCapturedStderr(),
+            "mapper: ignores messages of other runs, such as one on NEXTVIEW_GOAL whose run is 0: "
+            "what belongs to this run must have run = 7\n");
+  EXPECT_EQ(mapper_.counters().foreign, 3);
+}
+
+TEST_F(BusPair, WhatIsForgottenIsMissingAndMayBePublishedAgain) {
+  goal_t goal = example<goal_t>();
+  for (goal.view = 1; goal.view <= 300; ++goal.view) {
+    planner_.publish(goal);
+    planner_.forget_before<goal_t>(goal.view - 4);
+  }
+  EXPECT_EQ(planner_.remembered_bytes(), 5 * encode(goal).size());
+  std::vector<int> missing;
+  planner_.on_missing([&](const request_t& request) {
+    missing.push_back(request.view);
+    goal.view = request.view;
+    planner_.publish(goal);
+  });
+  int received = 0;
+  mapper_.on<goal_t>([&](const goal_t&) { ++received; });
+  settle();
+  mapper_.request<goal_t>(295, 0);
+  mapper_.request<goal_t>(296, 0);
+  settle();
+  EXPECT_EQ(missing, std::vector<int>{295});
+  EXPECT_EQ(planner_.counters().lost, 1);
+  EXPECT_EQ(received, 300);
+  EXPECT_EQ(mapper_.counters().repeated, 2) << "the one made again is the one that was";
+}
+
 TEST_F(BusPair, WhatAHandlerThrowsComesOut) {
   mapper_.on<goal_t>([](const goal_t&) { throw std::runtime_error("a fault of our own"); });
   planner_.publish(example<goal_t>());

@@ -69,6 +69,13 @@ TEST(LcmTransport, AHandlersExceptionPassesThroughLcm) {
       std::runtime_error);
 }
 
+TEST(LcmTransport, RefusesWhatLcmWouldCutIntoFragments) {
+  LcmTransport transport(url());
+  EXPECT_THROW(transport.publish("NEXTVIEW_GOAL", std::vector<std::uint8_t>(kMaxMessageBytes + 1)),
+               std::logic_error);
+  EXPECT_NO_THROW(transport.publish("NEXTVIEW_GOAL", std::vector<std::uint8_t>(kMaxMessageBytes)));
+}
+
 std::string error_of(const std::string& lcm_url) {
   try {
     const Bus bus(lcm_url, 7, "mapper");
