@@ -7,6 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "lcmtypes/parameter_bounds.h"
 #include "scene/enclosure.h"
 
 namespace nextview {
@@ -101,12 +102,10 @@ void check(const BaseLimits& limits) {
       limits.lift_min_m >= limits.lift_max_m) {
     throw std::invalid_argument("the lift's lowest height must be below its highest");
   }
-  for (const double value : {limits.base_speed_m_s, limits.lift_speed_m_s, limits.turn_speed_rad_s,
-                             limits.body_radius_m}) {
-    if (!(std::isfinite(value) && value > 0.0)) {
-      throw std::invalid_argument("speeds and the body's radius must be positive and finite");
-    }
-  }
+  bounds::kBaseSpeed.require(limits.base_speed_m_s);
+  bounds::kLiftSpeed.require(limits.lift_speed_m_s);
+  bounds::kTurnSpeed.require(limits.turn_speed_rad_s);
+  bounds::kBodyRadius.require(limits.body_radius_m);
 }
 
 void check_start(const BaseLimits& limits, const SensorPose& start, const Scene& scene) {

@@ -1,6 +1,5 @@
 #include "bench/exploration.h"
 
-#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -36,7 +35,7 @@ Exploration::Exploration(const BenchScene& scene, const ExplorationParameters& p
       rays_(make_ray_table(parameters.sensor)),
       planner_({parameters.voxel_size_m},
                window_around(scene.scene.mesh(), parameters.voxel_size_m), std::move(strategy),
-               {.seed = parameters.seed, .max_views = std::numeric_limits<int>::max()}),
+               {.seed = parameters.seed, .max_views = 1'000'000}),
       pose_(scene.start) {}
 
 ViewCost Exploration::step() {

@@ -31,9 +31,6 @@ struct TypeList {
 using AllMessages = TypeList<run_config_t, goal_t, search_t, arrival_t, range_image_t, commit_t,
                              stop_t, status_t, request_t, timing_t>;
 
-/// The largest raster a range image may have, columns and rows each.
-constexpr int kMaxColumnsOrRows = 4096;
-
 /// What tells the messages of one channel of one run apart.
 struct MessageKey {
   std::int32_t view = 0;     ///< 0 for messages that belong to no view

@@ -38,9 +38,8 @@ Eigen::Matrix3d matrix_of(const double (&m)[3][3]) {
 }
 
 void check_part(Checks& checks, const range_image_t& image) {
-  checks.require(image.columns >= 2 && image.columns <= kMaxColumnsOrRows && image.rows >= 2 &&
-                     image.rows <= kMaxColumnsOrRows,
-                 "raster of " + std::to_string(image.columns) + " x " + std::to_string(image.rows));
+  checks.within(bounds::kColumns, image.columns);
+  checks.within(bounds::kRows, image.rows);
   const std::int64_t all_entries = std::int64_t{image.columns} + image.rows;
   const std::int64_t all_pixels = std::int64_t{image.columns} * image.rows;
   const std::int64_t entry_end = std::int64_t{image.first_entry} + image.entries;
@@ -136,8 +135,8 @@ std::string check(const range_image_t& image) {
   check_part(checks, image);
   checks.require(on_unit_circle(image.entry_sin, image.entry_cos),
                  "sine and cosine of a column or row do not belong together");
-  checks.not_negative("range_min_m", image.range_min_m);
-  checks.positive("range_max_m", image.range_max_m);
+  checks.within(bounds::kRangeMin, image.range_min_m);
+  checks.within(bounds::kRangeMax, image.range_max_m);
   checks.require(are_range_limits({image.range_min_m, image.range_max_m}),
                  "range_min_m is not below range_max_m");
   checks.finite("position_m", image.position_m);

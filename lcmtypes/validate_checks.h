@@ -5,6 +5,8 @@
 #include <string>
 #include <string_view>
 
+#include "lcmtypes/parameter_bounds.h"
+
 namespace nextview {
 
 /// Collects what is wrong with a message; the first reason found stands.
@@ -22,6 +24,12 @@ class Checks {
   /// Bounds included; NaN is outside.
   void within(std::string_view name, double value, double least, double most) {
     if (!(value >= least && value <= most)) fail(name, value, "out of range");
+  }
+  void within(const Bounds& bounds, double value) {
+    require(bounds.contain(value), bounds.refusal(value));
+  }
+  void within(const Bounds& bounds, std::span<const double> values) {
+    for (const double value : values) within(bounds, value);
   }
   void not_negative(std::string_view name, double value) {
     if (!(value >= 0.0 && std::isfinite(value))) fail(name, value, "negative or not finite");

@@ -37,48 +37,48 @@ void check_sensor(Checks& checks, const sensor_config_t& sensor) {
   checks.require(std::max(horizontal_rad, vertical_rad) < std::numbers::pi,
                  "an aperture of 180 degrees or more");
   for (int i = 2; i < 8; ++i) checks.neutral("geometry_parameter", sensor.geometry_parameter[i]);
-  checks.within("columns", sensor.columns, 2, kMaxColumnsOrRows);
-  checks.within("rows", sensor.rows, 2, kMaxColumnsOrRows);
-  checks.not_negative("range_min_m", sensor.range_min_m);
-  checks.positive("range_max_m", sensor.range_max_m);
+  checks.within(bounds::kColumns, sensor.columns);
+  checks.within(bounds::kRows, sensor.rows);
+  checks.within(bounds::kRangeMin, sensor.range_min_m);
+  checks.within(bounds::kRangeMax, sensor.range_max_m);
   checks.require(sensor.range_min_m < sensor.range_max_m, "range_min_m is not below range_max_m");
-  checks.not_negative("range_noise_m", sensor.range_noise_m);
-  checks.within("scan_duration_s", sensor.scan_duration_s, 0.0, 1e6);
+  checks.within(bounds::kRangeNoise, sensor.range_noise_m);
+  checks.within(bounds::kScanDuration, sensor.scan_duration_s);
 }
 
 void check_base(Checks& checks, const base_config_t& base) {
-  checks.finite("start_m", base.start_m);
+  checks.within(bounds::kPosition, base.start_m);
   checks.within("start_pan_rad", base.start_pan_rad, -2.0 * std::numbers::pi,
                 2.0 * std::numbers::pi);
   checks.within("start_tilt_rad", base.start_tilt_rad, -std::numbers::pi / 2.0,
                 std::numbers::pi / 2.0);
-  checks.not_negative("body_radius_m", base.body_radius_m);
-  checks.finite("workspace_min_m", base.workspace_min_m);
-  checks.finite("workspace_max_m", base.workspace_max_m);
+  checks.within(bounds::kBodyRadius, base.body_radius_m);
+  checks.within(bounds::kPosition, base.workspace_min_m);
+  checks.within(bounds::kPosition, base.workspace_max_m);
   for (int axis = 0; axis < 3; ++axis) {
     checks.require(base.workspace_min_m[axis] < base.workspace_max_m[axis],
                    "workspace_min_m is not below workspace_max_m");
   }
-  checks.finite("lift_min_m", base.lift_min_m);
-  checks.finite("lift_max_m", base.lift_max_m);
-  checks.require(base.lift_min_m <= base.lift_max_m, "lift_min_m is above lift_max_m");
-  checks.positive("base_speed_m_s", base.base_speed_m_s);
-  checks.positive("lift_speed_m_s", base.lift_speed_m_s);
-  checks.positive("turn_speed_rad_s", base.turn_speed_rad_s);
+  checks.within(bounds::kLift, base.lift_min_m);
+  checks.within(bounds::kLift, base.lift_max_m);
+  checks.require(base.lift_min_m < base.lift_max_m, "lift_min_m is not below lift_max_m");
+  checks.within(bounds::kBaseSpeed, base.base_speed_m_s);
+  checks.within(bounds::kLiftSpeed, base.lift_speed_m_s);
+  checks.within(bounds::kTurnSpeed, base.turn_speed_rad_s);
 }
 
 void check_map(Checks& checks, const map_config_t& map) {
-  checks.positive("voxel_size_m", map.voxel_size_m);
-  checks.finite("map_origin_m", map.map_origin_m);
+  checks.within(bounds::kVoxelSize, map.voxel_size_m);
+  checks.within(bounds::kPosition, map.map_origin_m);
   for (int axis = 0; axis < 3; ++axis) {
-    checks.within("window_size", map.window_size[axis], 1, 4096);
-    checks.within("window_min", map.window_min[axis], -1e9, 1e9);
+    checks.within(bounds::kWindowSize, map.window_size[axis]);
+    checks.within(bounds::kWindowMin, map.window_min[axis]);
   }
 }
 
 void check_planner(Checks& checks, const planner_config_t& planner) {
-  checks.within("max_views", planner.max_views, 1, 1e6);
-  checks.within("max_attempts", planner.max_attempts, 1, 1e6);
+  checks.within(bounds::kMaxViews, planner.max_views);
+  checks.within(bounds::kMaxAttempts, planner.max_attempts);
   checks.require(planner.quality_weight == 0.0 || planner.quality_weight == 1.0,
                  "quality_weight is neither 0 nor 1");
   checks.require(planner.stop_rule == 1 || planner.stop_rule == 2, "stop_rule is not 1 or 2");
@@ -92,21 +92,20 @@ void check_planner(Checks& checks, const planner_config_t& planner) {
   checks.neutral("least_overlap", planner.least_overlap);
   checks.neutral("least_gain_m2", planner.least_gain_m2);
   checks.neutral("return_home", planner.return_home);
-  checks.within("quality_threshold", planner.quality_threshold, 0.0, 1.0);
-  checks.not_negative("clearance_m", planner.clearance_m);
-  checks.not_negative("departure_m", planner.departure_m);
+  checks.within(bounds::kQualityThreshold, planner.quality_threshold);
+  checks.within(bounds::kClearance, planner.clearance_m);
+  checks.within(bounds::kDeparture, planner.departure_m);
   checks.require(planner.directions == 20 || planner.directions == 80 ||
                      planner.directions == 320 || planner.directions == 1280,
                  "directions is not 20, 80, 320 or 1280");
-  checks.within("threads", planner.threads, 1, 256);
-  checks.positive("step_min_m", planner.step_min_m);
-  checks.positive("step_max_m", planner.step_max_m);
+  checks.within(bounds::kThreads, planner.threads);
+  checks.within(bounds::kStep, planner.step_min_m);
+  checks.within(bounds::kStep, planner.step_max_m);
   checks.require(planner.step_min_m <= planner.step_max_m, "step_min_m is above step_max_m");
-  checks.not_negative("fitness_tolerance", planner.fitness_tolerance);
-  // What was tried for one goal has to fit in one search_t.
-  checks.within("max_evaluations", planner.max_evaluations, 4, 1200);
-  checks.within("stop_window_views", planner.stop_window_views, 1, 1e6);
-  checks.not_negative("stop_new_area_m2", planner.stop_new_area_m2);
+  checks.within(bounds::kFitnessTolerance, planner.fitness_tolerance);
+  checks.within(bounds::kMaxEvaluations, planner.max_evaluations);
+  checks.within(bounds::kStopWindow, planner.stop_window_views);
+  checks.within(bounds::kStopNewArea, planner.stop_new_area_m2);
 }
 
 }  // namespace

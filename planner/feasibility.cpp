@@ -4,7 +4,9 @@
 #include <cmath>
 #include <cstdlib>
 #include <stdexcept>
+
 #include <string>
+#include "lcmtypes/parameter_bounds.h"
 
 #include "planner/segment_walk.h"
 
@@ -15,8 +17,6 @@ namespace {
 void require(bool holds, const char* parameter, const char* rule) {
   if (!holds) throw std::invalid_argument(std::string(parameter) + " must be " + rule);
 }
-
-bool is_length(double length_m) { return length_m >= 0.0 && length_m <= 5.0; }
 
 // The least squared distance, in whole voxels, that is not nearer than a length.
 int squared_voxels(double length_m, double voxel_size_m) {
@@ -37,9 +37,9 @@ double distance_to_segment(const Eigen::Vector3d& point, const Eigen::Vector3d& 
 }  // namespace
 
 void FeasibilityParameters::check() const {
-  require(is_length(clearance_m), "clearance_m", "a length from 0 to 5 m");
-  require(is_length(body_radius_m), "body_radius_m", "a length from 0 to 5 m");
-  require(is_length(departure_m), "departure_m", "a length from 0 to 5 m");
+  bounds::kClearance.require(clearance_m);
+  if (body_radius_m != 0.0) bounds::kBodyRadius.require(body_radius_m);
+  bounds::kDeparture.require(departure_m);
   for (int axis = 0; axis < 3; ++axis) {
     require(workspace_min_m[axis] < workspace_max_m[axis], "workspace_min_m",
             "below workspace_max_m on every axis");

@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "lcmtypes/parameter_bounds.h"
 #include "planner/prediction/orientations.h"
 #include "planner/view_evaluator.h"
 #include "sensor/random_stream.h"
@@ -71,16 +72,13 @@ Decision decision_of(const SimplexResult& search, const ViewEvaluator& evaluator
 }  // namespace
 
 void PlannerParameters::check() const {
-  if (!(step_min_m > 0.0) || !std::isfinite(step_min_m)) {
-    throw std::invalid_argument("step_min_m must be a positive length");
-  }
-  if (!(step_max_m >= step_min_m) || !std::isfinite(step_max_m)) {
+  bounds::kStep.require(step_min_m);
+  bounds::kStep.require(step_max_m);
+  if (step_min_m > step_max_m) {
     throw std::invalid_argument("step_max_m must be at least step_min_m");
   }
-  if (!(fitness_tolerance >= 0.0) || !std::isfinite(fitness_tolerance)) {
-    throw std::invalid_argument("fitness_tolerance must be 0 or more");
-  }
-  if (max_evaluations < 4) throw std::invalid_argument("max_evaluations must be at least 4");
+  bounds::kFitnessTolerance.require(fitness_tolerance);
+  bounds::kMaxEvaluations.require(max_evaluations);
   feasibility.check();
 }
 

@@ -1,8 +1,9 @@
 #include "planner/termination.h"
 
 #include <array>
-#include <cmath>
 #include <stdexcept>
+
+#include "lcmtypes/parameter_bounds.h"
 
 namespace nextview {
 
@@ -81,13 +82,9 @@ std::string_view describe(StopReason reason) {
 }
 
 void StopParameters::check() const {
-  if (!(quality_threshold >= 0.0 && quality_threshold <= 1.0)) {
-    throw std::invalid_argument("quality_threshold must lie between 0 and 1");
-  }
-  if (stop_window_views < 1) throw std::invalid_argument("stop_window_views must be at least 1");
-  if (!(stop_new_area_m2 >= 0.0) || !std::isfinite(stop_new_area_m2)) {
-    throw std::invalid_argument("stop_new_area_m2 must be an area of 0 or more");
-  }
+  bounds::kQualityThreshold.require(quality_threshold);
+  bounds::kStopWindow.require(stop_window_views);
+  bounds::kStopNewArea.require(stop_new_area_m2);
 }
 
 ViewFacts view_facts(std::int64_t newly_occupied_voxels, double voxel_size_m, double min_quality) {

@@ -3,11 +3,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "lcmtypes/parameter_bounds.h"
+
 namespace nextview {
 
 void ViewPlanner::Parameters::check() const {
-  if (max_views < 1) throw std::invalid_argument("max_views must be at least 1");
-  if (threads < 1) throw std::invalid_argument("threads must be at least 1");
+  bounds::kMaxViews.require(max_views);
+  bounds::kThreads.require(threads);
 }
 
 ViewPlanner::ViewPlanner(const VoxelGrid& grid, const MapWindow& window,

@@ -1,44 +1,34 @@
 #include "runner/run_options.h"
 
 #include <CLI/CLI.hpp>
-#include <cmath>
-#include <limits>
-#include <sstream>
+#include <numbers>
 
+#include "lcmtypes/parameter_bounds.h"
 #include "lcmtypes/program_version.h"
 
 namespace nextview {
 namespace {
 
-constexpr double kNoLimit = std::numeric_limits<double>::max();
-
-/// Accepts finite numbers in [least, most]; CLI::Range would let NaN through.
-CLI::Validator number_in(double least, double most) {
-  const auto text = [](double value) {
-    std::ostringstream out;
-    out << value;
-    return out.str();
-  };
-  std::string range = "from " + text(least) + " to " + text(most);
-  if (least == -kNoLimit && most == kNoLimit) {
-    range = "and finite";
-  } else if (most == kNoLimit) {
-    range = "of " + text(least) + " or more";
-  }
+/// Accepts what a parameter may be; CLI::Range would let NaN through.
+CLI::Validator number_within(const Bounds& bounds) {
   return CLI::Validator(
-      [least, most, range](std::string& given) {
+      [bounds](std::string& given) {
         double value = 0.0;
-        if (!CLI::detail::lexical_cast(given, value) || !std::isfinite(value) || value < least ||
-            value > most) {
-          return "must be a number " + range + ", not " + given;
+        if (!CLI::detail::lexical_cast(given, value) || !bounds.contain(value)) {
+          return "must be a number " + bounds.range() + ", not " + given;
         }
         return std::string();
       },
       "");
 }
+/// Of what is no parameter of a message.
+CLI::Validator number_in(double least, double most) { return number_within({"", least, most}); }
 
-CLI::Validator any_number() { return number_in(-kNoLimit, kNoLimit); }
-CLI::Validator length_m() { return number_in(0.0001, 1e5); }
+/// In degrees, as typed.
+constexpr Bounds in_degrees(const Bounds& radians) {
+  constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
+  return {radians.name, radians.least * kDegreesPerRad, radians.most * kDegreesPerRad};
+}
 
 void add_scene_options(CLI::App& app, RunOptions& options) {
   const std::string group = "Scene";
@@ -50,7 +40,7 @@ void add_scene_options(CLI::App& app, RunOptions& options) {
          "--start", options.start_m,
          "Where the sensor starts: X Y Z in metres, world frame; default: as the scene says")
       ->expected(3)
-      ->check(any_number())
+      ->check(number_within(bounds::kPosition))
       ->group(group);
   app.add_option("--start-pan", options.start_pan_deg,
                  "Where it looks at first, degrees: 0 along +y, 90 along -x; default: as the scene "
@@ -80,7 +70,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
       ->group(group);
   app.add_option("--views", options.views,
                  "End after this many views; default 60, with --quality 300")
-      ->check(number_in(1, 1e6))
+      ->check(number_within(bounds::kMaxViews))
       ->group(group);
   app.add_flag("--quality", options.quality,
                "Look for quality too (paper eq. 4) and go on until every voxel has it")
@@ -110,11 +100,11 @@ void add_run_options(CLI::App& app, RunOptions& options) {
 void add_sensor_options(CLI::App& app, RunOptions& options) {
   const std::string group = "Sensor (tilted line scan, paper eq. 5)";
   app.add_option("--columns", options.columns, "Columns of a range image")
-      ->check(number_in(2, 4096))
+      ->check(number_within(bounds::kColumns))
       ->capture_default_str()
       ->group(group);
   app.add_option("--rows", options.rows, "Rows of a range image")
-      ->check(number_in(2, 4096))
+      ->check(number_within(bounds::kRows))
       ->capture_default_str()
       ->group(group);
   app.add_option("--aperture", options.aperture_deg,
@@ -123,20 +113,20 @@ void add_sensor_options(CLI::App& app, RunOptions& options) {
       ->capture_default_str()
       ->group(group);
   app.add_option("--range-min", options.range.min_m, "Nearer surfaces give no valid range, m")
-      ->check(number_in(0.0, 1e5))
+      ->check(number_within(bounds::kRangeMin))
       ->capture_default_str()
       ->group(group);
   app.add_option("--range-max", options.range.max_m, "Farther surfaces give no return, m")
-      ->check(length_m())
+      ->check(number_within(bounds::kRangeMax))
       ->capture_default_str()
       ->group(group);
   app.add_option("--range-noise-m", options.range_noise_m,
                  "Standard deviation of Gaussian range noise, m")
-      ->check(number_in(0.0, 100.0))
+      ->check(number_within(bounds::kRangeNoise))
       ->capture_default_str()
       ->group(group);
   app.add_option("--scan-duration", options.scan_duration_s, "Simulated time a scan takes, s")
-      ->check(number_in(0.0, 1e6))
+      ->check(number_within(bounds::kScanDuration))
       ->capture_default_str()
       ->group(group);
 }
@@ -145,28 +135,28 @@ void add_base_options(CLI::App& app, RunOptions& options) {
   const std::string group = "Base (simulated time)";
   app.add_option("--body-radius", options.body_radius_m,
                  "The body is a sphere of this radius about the sensor, m")
-      ->check(length_m())
+      ->check(number_within(bounds::kBodyRadius))
       ->capture_default_str()
       ->group(group);
   app.add_option("--lift-min", options.lift_min_m,
                  "Lowest z of the sensor, m; default: the scene's lowest + body radius")
-      ->check(any_number())
+      ->check(number_within(bounds::kLift))
       ->group(group);
   app.add_option("--lift-max", options.lift_max_m,
                  "Highest z of the sensor, m; default: the scene's highest - body radius, at most "
                  "2.8 m above its lowest")
-      ->check(any_number())
+      ->check(number_within(bounds::kLift))
       ->group(group);
   app.add_option("--base-speed", options.base_speed_m_s, "m/s")
-      ->check(number_in(1e-6, 1e6))
+      ->check(number_within(bounds::kBaseSpeed))
       ->capture_default_str()
       ->group(group);
   app.add_option("--lift-speed", options.lift_speed_m_s, "m/s")
-      ->check(number_in(1e-6, 1e6))
+      ->check(number_within(bounds::kLiftSpeed))
       ->capture_default_str()
       ->group(group);
   app.add_option("--turn-speed", options.turn_speed_deg_s, "Of pan and of tilt, degrees/s")
-      ->check(number_in(1e-6, 1e6))
+      ->check(number_within(in_degrees(bounds::kTurnSpeed)))
       ->capture_default_str()
       ->group(group);
 }
@@ -174,7 +164,7 @@ void add_base_options(CLI::App& app, RunOptions& options) {
 void add_map_options(CLI::App& app, RunOptions& options) {
   const std::string group = "Voxel map";
   app.add_option("--voxel-size", options.voxel_size_m, "Side of a voxel, m")
-      ->check(number_in(0.001, 10.0))
+      ->check(number_within(bounds::kVoxelSize))
       ->capture_default_str()
       ->group(group);
   app.add_option("--margin-voxels", options.margin_voxels,
@@ -188,12 +178,12 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
   const std::string group = "Planner";
   app.add_option("--clearance", options.clearance_m,
                  "Nothing known may be nearer to the sensor and its path, m (paper: 4 voxels)")
-      ->check(number_in(0.0, 100.0))
+      ->check(number_within(bounds::kClearance))
       ->capture_default_str()
       ->group(group);
   app.add_option("--departure", options.departure_m,
                  "Unknown space this near to where the sensor stands does not hold it back, m")
-      ->check(number_in(0.0, 5.0))
+      ->check(number_within(bounds::kDeparture))
       ->capture_default_str()
       ->group(group);
   app.add_option("--directions", options.directions,
@@ -203,46 +193,46 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
       ->group(group);
   app.add_option("--threads", options.threads,
                  "Threads the planner may use; the result does not depend on it")
-      ->check(number_in(1, 256))
+      ->check(number_within(bounds::kThreads))
       ->capture_default_str()
       ->group(group);
   app.add_option("--step-min", options.step_min_m,
                  "Least distance of the first simplex's vertices from the sensor, m")
-      ->check(length_m())
+      ->check(number_within(bounds::kStep))
       ->capture_default_str()
       ->group(group);
   app.add_option("--step-max", options.step_max_m, "Largest such distance, m")
-      ->check(length_m())
+      ->check(number_within(bounds::kStep))
       ->capture_default_str()
       ->group(group);
   app.add_option("--fitness-tolerance", options.fitness_tolerance,
                  "The search stops when the simplex's fitness range falls below")
-      ->check(number_in(0.0, 2.0))
+      ->check(number_within(bounds::kFitnessTolerance))
       ->capture_default_str()
       ->group(group);
   app.add_option("--max-evaluations", options.max_evaluations,
                  "... or after this many positions, each in all orientations")
-      ->check(number_in(4, 1200))
+      ->check(number_within(bounds::kMaxEvaluations))
       ->capture_default_str()
       ->group(group);
   app.add_option("--max-attempts", options.max_attempts,
                  "Goals of one view the base may refuse before the run gives up")
-      ->check(number_in(1, 1e6))
+      ->check(number_within(bounds::kMaxAttempts))
       ->capture_default_str()
       ->group(group);
   app.add_option("--quality-threshold", options.quality_threshold,
                  "With --quality: the quality every voxel should reach, 0 to 1")
-      ->check(number_in(0.0, 1.0))
+      ->check(number_within(bounds::kQualityThreshold))
       ->capture_default_str()
       ->group(group);
   app.add_option("--stop-window", options.stop_window_views,
                  "The run ends when over this many views ...")
-      ->check(number_in(1, 1e6))
+      ->check(number_within(bounds::kStopWindow))
       ->capture_default_str()
       ->group(group);
   app.add_option("--stop-new-area", options.stop_new_area_m2,
                  "... less than this area became newly Occupied, m2")
-      ->check(number_in(0.0, 1e6))
+      ->check(number_within(bounds::kStopNewArea))
       ->capture_default_str()
       ->group(group);
 }

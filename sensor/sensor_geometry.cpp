@@ -4,15 +4,16 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "lcmtypes/parameter_bounds.h"
+
 namespace nextview {
 
 TiltedLineScan TiltedLineScan::paper() { return with_aperture(64, 30, std::numbers::pi / 3.0); }
 
 TiltedLineScan TiltedLineScan::with_aperture(int columns, int rows,
                                              double horizontal_aperture_rad) {
-  if (columns < 2 || rows < 2) {
-    throw std::invalid_argument("a tilted line scan sensor needs at least 2 columns and 2 rows");
-  }
+  bounds::kColumns.require(columns);
+  bounds::kRows.require(rows);
   if (!(horizontal_aperture_rad > 0.0 && horizontal_aperture_rad < std::numbers::pi / 2.0)) {
     throw std::invalid_argument(
         "the horizontal aperture must lie between 0 and 90 degrees, both excluded");
@@ -42,9 +43,8 @@ bool is_aperture(double angle_rad) { return angle_rad > 0.0 && angle_rad < std::
 }  // namespace
 
 RayTable make_ray_table(const TiltedLineScan& sensor) {
-  if (sensor.columns < 2 || sensor.rows < 2) {
-    throw std::invalid_argument("a tilted line scan sensor needs at least 2 columns and 2 rows");
-  }
+  bounds::kColumns.require(sensor.columns);
+  bounds::kRows.require(sensor.rows);
   if (!is_aperture(sensor.horizontal_aperture_rad) || !is_aperture(sensor.vertical_aperture_rad)) {
     throw std::invalid_argument("a sensor's apertures must lie between 0 and 180 degrees");
   }

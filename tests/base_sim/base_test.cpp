@@ -215,7 +215,7 @@ TEST_F(BaseTest, RefusesLimitsThatCannotBe) {
   expect_says(with([](BaseLimits& l) { l.base_speed_m_s = 0.0; }), "positive");
   expect_says(with([](BaseLimits& l) { l.lift_speed_m_s = -1.0; }), "positive");
   expect_says(with([](BaseLimits& l) { l.turn_speed_rad_s = HUGE_VAL; }), "positive");
-  expect_says(with([](BaseLimits& l) { l.body_radius_m = std::nan(""); }), "positive");
+  expect_says(with([](BaseLimits& l) { l.body_radius_m = std::nan(""); }), "body_radius_m = nan");
 }
 
 TEST(BaseInOurRooms, StartsWhereTheySayAndNotInsideObstacles) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "lcmtypes/parameter_bounds.h"
 #include "tests/lcmtypes/examples.h"
 
 namespace nextview {
@@ -236,6 +237,18 @@ TEST(Validate, NamesOfAList) {
   EXPECT_EQ(names_of("a,bc,"), (std::vector<std::string_view>{"a", "bc", ""}));
 }
 
+// What the planner would refuse, the message says in the planner's own words.
+TEST(Validate, SaysWhatAParameterMayBeAsTheLibrariesDo) {
+  auto config = example<run_config_t>();
+  config.planner.clearance_m = 7.0;
+  EXPECT_EQ(check(config), "clearance_m = 7 is not a number from 0 to 5");
+  EXPECT_EQ(bounds::kClearance.refusal(7.0), check(config));
+  EXPECT_THROW(bounds::kClearance.require(7.0), std::invalid_argument);
+  EXPECT_THROW(bounds::kClearance.require(kNan), std::invalid_argument);
+  EXPECT_NO_THROW(bounds::kClearance.require(5.0));
+  EXPECT_EQ(bounds::kClearance.refusal(0.4), "");
+}
+
 TEST(Validate, ARunWithoutAScene) {
   auto config = example<run_config_t>();
   config.has_scene = 0;
@@ -265,6 +278,15 @@ TEST(Validate, RunConfig) {
       {"no speed", [](run_config_t& m) { m.base.lift_speed_m_s = 0.0; }},
       {"voxels of no size", [](run_config_t& m) { m.map.voxel_size_m = 0.0; }},
       {"window of no size", [](run_config_t& m) { m.map.window_size[0] = 0; }},
+      {"a start beyond the world", [](run_config_t& m) { m.base.start_m[1] = 2e9; }},
+      {"a body without a radius", [](run_config_t& m) { m.base.body_radius_m = 0.0; }},
+      {"a clearance the planner would refuse",
+       [](run_config_t& m) { m.planner.clearance_m = 7.0; }},
+      {"a departure the planner would refuse",
+       [](run_config_t& m) { m.planner.departure_m = 5.1; }},
+      {"NaN clearance", [](run_config_t& m) { m.planner.clearance_m = kNan; }},
+      {"a voxel larger than a room", [](run_config_t& m) { m.map.voxel_size_m = 11.0; }},
+      {"a step without end", [](run_config_t& m) { m.planner.step_max_m = kInf; }},
       {"no views", [](run_config_t& m) { m.planner.max_views = 0; }},
       {"no attempts", [](run_config_t& m) { m.planner.max_attempts = 0; }},
       {"threshold above 1", [](run_config_t& m) { m.planner.quality_threshold = 1.5; }},

@@ -158,13 +158,15 @@ TEST_F(Hall, ParametersThatCannotBeAreNamed) {
   };
   using P = PlannerParameters;
   EXPECT_EQ(message([](P&) {}), "accepted");
-  EXPECT_EQ(message([](P& p) { p.step_min_m = 0.0; }), "step_min_m must be a positive length");
+  EXPECT_EQ(message([](P& p) { p.step_min_m = 0.0; }),
+            "step_min_m or step_max_m = 0 is not a number from 0.0001 to 100000");
   EXPECT_EQ(message([](P& p) { p.step_max_m = 0.1; }), "step_max_m must be at least step_min_m");
   EXPECT_EQ(message([](P& p) { p.fitness_tolerance = -1.0; }),
-            "fitness_tolerance must be 0 or more");
-  EXPECT_EQ(message([](P& p) { p.max_evaluations = 3; }), "max_evaluations must be at least 4");
+            "fitness_tolerance = -1 is not a number from 0 to 2");
+  EXPECT_EQ(message([](P& p) { p.max_evaluations = 3; }),
+            "max_evaluations = 3 is not a number from 4 to 1200");
   EXPECT_EQ(message([](P& p) { p.feasibility.clearance_m = -1.0; }),
-            "clearance_m must be a length from 0 to 5 m");
+            "clearance_m = -1 is not a number from 0 to 5");
   EXPECT_NE(message([](P& p) { p.use_quality = true; }), "accepted");
 }
 

@@ -71,10 +71,11 @@ TEST(Termination, ParametersThatCannotBeAreNamed) {
   using P = StopParameters;
   EXPECT_EQ(message([](P&) {}), "accepted");
   EXPECT_EQ(message([](P& p) { p.quality_threshold = 1.1; }),
-            "quality_threshold must lie between 0 and 1");
-  EXPECT_EQ(message([](P& p) { p.stop_window_views = 0; }), "stop_window_views must be at least 1");
+            "quality_threshold = 1.1 is not a number from 0 to 1");
+  EXPECT_EQ(message([](P& p) { p.stop_window_views = 0; }),
+            "stop_window_views = 0 is not a number from 1 to 1e+06");
   EXPECT_EQ(message([](P& p) { p.stop_new_area_m2 = -1.0; }),
-            "stop_new_area_m2 must be an area of 0 or more");
+            "stop_new_area_m2 = -1 is not a number from 0 to 1e+06");
 }
 
 TEST(StopReasons, RoundTripThroughTheirNames) {

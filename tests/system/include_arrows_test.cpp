@@ -47,7 +47,12 @@ const Folders kOnTheBus = {"lcmtypes", "logger", "report", "runner"};
 /// Folders that hold no part of the system.
 const Folders kNotOurs = {"tests", "bench"};
 
+/// Of a folder on the bus, but without the bus, and for everybody: what a parameter may be is said
+/// once.
+const fs::path kForEverybody = "lcmtypes/parameter_bounds.h";
+
 bool is_of_bus(const std::string& folder, const std::string& stem) {
+  if (fs::path(folder) / (stem + ".h") == kForEverybody) return false;
   if (kOnTheBus.contains(folder)) return true;
   for (const char* ending : {"_process", "_main", "_config", "_message"}) {
     if (stem.ends_with(ending)) return true;
@@ -67,6 +72,7 @@ Source source_of(const fs::path& file) {
 }
 
 bool may_include(const Source& from, const Source& to) {
+  if (to.file == kForEverybody) return true;
   if (from.folder == to.folder) return from.of_bus || !to.of_bus;
   if (from.of_bus && to.folder == "lcmtypes") return true;
   if (to.of_bus && !from.of_bus) return false;

@@ -1,0 +1,91 @@
+#pragma once
+
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <stdexcept>
+#include <string>
+#include <string_view>
+
+/// What the parameters of a run may be, said once: the checks of messages, the command line's
+/// options and the libraries' parameter structs all go by these. Knows no message and no LCM, so
+/// that the libraries may include it.
+namespace nextview {
+
+/// A parameter's name and the finite values it may have, both ends included.
+struct Bounds {
+  std::string_view name;
+  double least;
+  double most;
+
+  /// NaN is outside.
+  constexpr bool contain(double value) const { return value >= least && value <= most; }
+  /// "from 0 to 5", "of 0 or more", "and finite".
+  std::string range() const;
+  /// Empty when the value is inside, else "clearance_m = 7 is not a number from 0 to 5".
+  std::string refusal(double value) const;
+  /// @throws std::invalid_argument with that refusal
+  void require(double value) const {
+    if (!contain(value)) throw std::invalid_argument(refusal(value));
+  }
+};
+
+namespace bounds {
+
+constexpr double kUnlimited = std::numeric_limits<double>::max();
+
+// Sensor.
+inline constexpr Bounds kColumns{"columns", 2, 4096};
+inline constexpr Bounds kRows{"rows", 2, 4096};
+inline constexpr Bounds kRangeMin{"range_min_m", 0.0, 1e5};
+inline constexpr Bounds kRangeMax{"range_max_m", 1e-4, 1e5};
+inline constexpr Bounds kRangeNoise{"range_noise_m", 0.0, 100.0};
+inline constexpr Bounds kScanDuration{"scan_duration_s", 0.0, 1e6};
+
+// Base.
+inline constexpr Bounds kPosition{"a position, m", -1e9, 1e9};
+inline constexpr Bounds kBodyRadius{"body_radius_m", 1e-4, 5.0};
+inline constexpr Bounds kLift{"lift_min_m or lift_max_m", -1e9, 1e9};
+inline constexpr Bounds kBaseSpeed{"base_speed_m_s", 1e-6, 1e6};
+inline constexpr Bounds kLiftSpeed{"lift_speed_m_s", 1e-6, 1e6};
+inline constexpr Bounds kTurnSpeed{"turn_speed_rad_s", 1e-8, 1e6};
+
+// Map.
+inline constexpr Bounds kVoxelSize{"voxel_size_m", 0.001, 10.0};
+inline constexpr Bounds kWindowSize{"window_size", 1, 4096};
+inline constexpr Bounds kWindowMin{"window_min", -1e9, 1e9};
+
+// Planner.
+inline constexpr Bounds kMaxViews{"max_views", 1, 1e6};
+inline constexpr Bounds kMaxAttempts{"max_attempts", 1, 1e6};
+inline constexpr Bounds kThreads{"threads", 1, 256};
+inline constexpr Bounds kStep{"step_min_m or step_max_m", 1e-4, 1e5};
+inline constexpr Bounds kFitnessTolerance{"fitness_tolerance", 0.0, 2.0};
+/// What was tried for one goal has to fit one search_t.
+inline constexpr Bounds kMaxEvaluations{"max_evaluations", 4, 1200};
+inline constexpr Bounds kClearance{"clearance_m", 0.0, 5.0};
+inline constexpr Bounds kDeparture{"departure_m", 0.0, 5.0};
+inline constexpr Bounds kQualityThreshold{"quality_threshold", 0.0, 1.0};
+inline constexpr Bounds kStopWindow{"stop_window_views", 1, 1e6};
+inline constexpr Bounds kStopNewArea{"stop_new_area_m2", 0.0, 1e6};
+
+}  // namespace bounds
+
+inline std::string Bounds::range() const {
+  const auto text = [](double value) {
+    char buffer[32];
+    std::snprintf(buffer, sizeof buffer, "%g", value);
+    return std::string(buffer);
+  };
+  if (most < bounds::kUnlimited) return "from " + text(least) + " to " + text(most);
+  return least > -bounds::kUnlimited ? "of " + text(least) + " or more" : "and finite";
+}
+
+inline std::string Bounds::refusal(double value) const {
+  if (contain(value)) return {};
+  char number[32];
+  std::snprintf(number, sizeof number, "%g", value);
+  return std::string(name) + " = " + number + " is not a number " + range();
+}
+
+}  // namespace nextview
