@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include <string>
+
 #include "lcmtypes/parameter_bounds.h"
 
 #include "planner/segment_walk.h"

@@ -212,9 +212,9 @@ TEST_F(BaseTest, RefusesLimitsThatCannotBe) {
   expect_says(with([](BaseLimits& l) { l.workspace_max_m.y() = -0.8; }), "workspace");
   expect_says(with([](BaseLimits& l) { l.workspace_min_m.y() = std::nan(""); }), "workspace");
   expect_says(with([](BaseLimits& l) { l.lift_max_m = 0.3; }), "lift");
-  expect_says(with([](BaseLimits& l) { l.base_speed_m_s = 0.0; }), "positive");
-  expect_says(with([](BaseLimits& l) { l.lift_speed_m_s = -1.0; }), "positive");
-  expect_says(with([](BaseLimits& l) { l.turn_speed_rad_s = HUGE_VAL; }), "positive");
+  expect_says(with([](BaseLimits& l) { l.base_speed_m_s = 0.0; }), "speed");
+  expect_says(with([](BaseLimits& l) { l.lift_speed_m_s = -1.0; }), "speed");
+  expect_says(with([](BaseLimits& l) { l.turn_speed_rad_s = HUGE_VAL; }), "speed");
   expect_says(with([](BaseLimits& l) { l.body_radius_m = std::nan(""); }), "body_radius_m = nan");
 }
 
