@@ -47,6 +47,7 @@ AskTimer reminder_after(milliseconds first) { return AskTimer(first, millisecond
 Run::Run(const RunOptions& options, RunSetup setup, const std::filesystem::path& folder,
          Progress& progress)
     : options_(options),
+      answering_(answering_roles(options.without)),
       setup_(std::move(setup)),
       files_(folder),
       progress_(progress),
@@ -124,19 +125,20 @@ void Run::start_up() {
   }
   bus_ = std::make_unique<Bus>(lcm_url_, setup_.config.run, "run");
   subscribe();
-  processes_.emplace(lcm_url_, setup_.config.run, files_.log);
-  if (options_.verbose) progress_.say("bus: " + lcm_url_ + ", run " + std::to_string(bus_->run()));
+  processes_.emplace(lcm_url_, setup_.config.run, files_.log, answering_);
+  if (options_.verbose || !options_.without.empty()) {
+    progress_.say("bus: " + lcm_url_ + ", run " + std::to_string(bus_->run()));
+  }
 
   // Nothing is known about a run before its configuration is, so the run starts with it: not before
   // all processes have asked for it, and requests are seen to arrive in the log.
   last_progress_ = Clock::now();
-  const std::set<std::string> answering(RunProcesses::answering_roles().begin(),
-                                        RunProcesses::answering_roles().end());
+  const std::set<std::string> answering(answering_.begin(), answering_.end());
   pump_until([&] { return recording() && all_of(answering, asked_for_config_); });
   record_.add(setup_.config);
   bus_->publish(setup_.config);
   last_progress_ = Clock::now();
-  if (!options_.no_coverage) start_scoring();
+  if (setup_.scene && !options_.no_coverage) start_scoring();
   // Each says so when it has loaded what it needs; only then is there somebody to hear a goal.
   pump_until([&] { return all_of(answering, fresh_statuses_); });
   processes_->start_planner();
@@ -229,8 +231,7 @@ void Run::collect_statuses() {
   bus_->request<status_t>(0, 0);
   // Only for the summary, so a process that does not answer is not waited for very long.
   const auto until = Clock::now() + milliseconds(1000);
-  std::set<std::string> roles(RunProcesses::answering_roles().begin(),
-                              RunProcesses::answering_roles().end());
+  std::set<std::string> roles(answering_.begin(), answering_.end());
   roles.insert("planner");
   while (!all_of(roles, fresh_statuses_) && Clock::now() < until) {
     pump(milliseconds(5));
@@ -298,6 +299,7 @@ FinishedRun Run::finish(Clock::time_point program_start) {
   run.visible = visible_;
   run.coverage_unknown = coverage_unknown_;
   if (options_.no_coverage) run.coverage_unknown = "--no-coverage was given";
+  if (!setup_.scene) run.coverage_unknown = "there is no CAD model to hold the map against";
   if (!visible_ && run.coverage_unknown.empty()) {
     run.coverage_unknown = "the run ended before it was worked out";
   }
@@ -355,18 +357,23 @@ void Run::request(const MissingMessage& missing) {
   });
 }
 
+std::string Run::who_is(const std::string& role) const {
+  const bool own = std::find(answering_.begin(), answering_.end(), role) == answering_.end();
+  return own ? "the driver in place of " + role : role;
+}
+
 std::string Run::waited_for() const {
   const std::string for_so_long =
       " for " + std::to_string(std::lround(options_.patience_s)) + " s (--patience)";
   if (!record_.config()) {
     std::string who;
-    for (const std::string& role : RunProcesses::answering_roles()) {
+    for (const std::string& role : answering_) {
       if (!asked_for_config_.contains(role)) who += (who.empty() ? "" : ", ") + role;
     }
     if (who.empty()) who = "lcm-logger, which has recorded nothing";
     return "nothing was heard of " + who + for_so_long;
   }
-  for (const std::string& role : RunProcesses::answering_roles()) {
+  for (const std::string& role : answering_) {
     if (!statuses_.contains(role)) return role + " did not get ready" + for_so_long;
   }
   const int view = record_.latest_view();
@@ -377,9 +384,9 @@ std::string Run::waited_for() const {
   if (record_.commit(view) || view == 0 || (arrival && !arrival->arrived)) {
     return "the planner gave no goal after view " + std::to_string(view) + for_so_long;
   }
-  if (!arrival) return "base_sim did not answer the goal" + of_view + for_so_long;
+  if (!arrival) return who_is("base_sim") + " did not answer the goal" + of_view + for_so_long;
   if (!record_.range_image(view, attempt)) {
-    return "sensor_sim sent no range image" + of_view + for_so_long;
+    return who_is("sensor_sim") + " sent no range image" + of_view + for_so_long;
   }
   return "the mapper did not commit the range image" + of_view + for_so_long;
 }

@@ -63,8 +63,10 @@ class Run {
   void request(const MissingMessage& missing);
   void make_rows();
   std::string waited_for() const;
+  std::string who_is(const std::string& role) const;
 
   RunOptions options_;
+  std::vector<std::string> answering_;  ///< roles of the processes that answer the planner
   RunSetup setup_;
   ArtefactFiles files_;
   Progress& progress_;

@@ -34,8 +34,7 @@ void add_scene_options(CLI::App& app, RunOptions& options) {
   const std::string group = "Scene";
   app.add_option("SCENE", options.scene,
                  "boxes, columns, another folder of scenes/, or a CAD file of any format assimp "
-                 "reads (with --start)")
-      ->capture_default_str();
+                 "reads (with --start); default: boxes");
   app.add_option(
          "--start", options.start_m,
          "Where the sensor starts: X Y Z in metres, world frame; default: as the scene says")
@@ -57,6 +56,20 @@ void add_scene_options(CLI::App& app, RunOptions& options) {
       ->group(group);
   app.add_option("--up", options.up,
                  "The CAD file's axis that points up: x, y or z; default: as the file says, else z")
+      ->group(group);
+  app.add_option(
+         "--without", options.without,
+         "Do not start these: sensor_sim, base_sim, or both, separated by a comma; a driver "
+         "of your own answers in their place. Without both there is no SCENE, and --start and "
+         "--workspace say what it would have said")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember({"sensor_sim", "base_sim"}))
+      ->group(group);
+  app.add_option("--workspace", options.workspace_m,
+                 "Without a scene: X0 Y0 Z0 X1 Y1 Z1, the box to be recovered, in metres")
+      ->expected(6)
+      ->check(number_in(-8192.0, 8192.0))
       ->group(group);
   app.add_option("--scenes", options.scenes_folder, "Folder of the scenes known by name")
       ->capture_default_str()
@@ -253,6 +266,8 @@ std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_sta
       "  ./run                                  the paper's first room, 60 views\n"
       "  ./run columns --seed 3 --quality       the second one, for quality, 300 views\n"
       "  ./run flat.dae --start 1.0 2.5 1.2     a CAD model of yours\n"
+      "  ./run --without sensor_sim,base_sim --start 1 2 1.2 --workspace 0 0 0 8 6 3\n"
+      "                                         a robot of yours, see README\n"
       "  ./run hall.stl --unit cm --up y --start 4 4 1.5 --voxel-size 0.05\n\n"
       "Exit status: 0 the stop rule or the number of views was reached; 1 the run could not\n"
       "start; 3 no feasible goal; 4 mapper and planner hold different maps; 5 somebody did not\n"

@@ -14,11 +14,15 @@ namespace nextview {
 
 /// What a user can say about a run, with the defaults. Angles in degrees, as typed.
 struct RunOptions {
-  std::string scene = "boxes";
+  std::optional<std::string> scene;  ///< boxes
   std::string scenes_folder;
   std::optional<std::string> unit;
   std::optional<std::string> up;
-  std::vector<double> start_m;  ///< three numbers, or empty: what the scene says
+  /// Of sensor_sim and base_sim those that a driver of one's own stands in for. Without either
+  /// there is no scene.
+  std::vector<std::string> without;
+  std::vector<double> workspace_m;  ///< without a scene: its lowest corner and its highest
+  std::vector<double> start_m;      ///< three numbers, or empty: what the scene says
   std::optional<double> start_pan_deg;
   double start_tilt_deg = 0.0;
 

@@ -14,12 +14,14 @@ constexpr double kPatience_s = 2.0;
 
 }  // namespace
 
-const std::vector<std::string>& RunProcesses::answering_roles() {
-  static const std::vector<std::string> all = {"base_sim", "sensor_sim", "mapper"};
-  return all;
+std::vector<std::string> answering_roles(const std::vector<std::string>& without) {
+  std::vector<std::string> roles = {"base_sim", "sensor_sim", "mapper"};
+  for (const std::string& role : without) std::erase(roles, role);
+  return roles;
 }
 
-RunProcesses::RunProcesses(std::string lcm_url, std::int64_t run, const std::filesystem::path& log)
+RunProcesses::RunProcesses(std::string lcm_url, std::int64_t run, const std::filesystem::path& log,
+                           const std::vector<std::string>& answering)
     : lcm_url_(std::move(lcm_url)), run_(run) {
   const auto recorder = find_in_path("lcm-logger");
   if (!recorder) {
@@ -35,7 +37,7 @@ RunProcesses::RunProcesses(std::string lcm_url, std::int64_t run, const std::fil
   } catch (const std::system_error& error) {
     throw SetupError(error.what());
   }
-  for (const std::string& role : answering_roles()) start(role);
+  for (const std::string& role : answering) start(role);
 }
 
 void RunProcesses::start_planner() { start("planner"); }

@@ -11,16 +11,19 @@
 
 namespace nextview {
 
+/// Roles of the processes that answer the planner, in the order in which they do, but for those
+/// that a driver stands in for.
+std::vector<std::string> answering_roles(const std::vector<std::string>& without);
+
 /// The processes of a run and its recorder.
 class RunProcesses {
  public:
-  /// Roles of the processes that answer the planner, in the order in which they do.
-  static const std::vector<std::string>& answering_roles();
-
   /// Starts lcm-logger, which must be in PATH, and the processes that answer the planner, which lie
   /// beside this program's own executable.
+  /// @param answering their roles
   /// @throws SetupError saying what cannot be started and what to do
-  RunProcesses(std::string lcm_url, std::int64_t run, const std::filesystem::path& log);
+  RunProcesses(std::string lcm_url, std::int64_t run, const std::filesystem::path& log,
+               const std::vector<std::string>& answering);
 
   /// Starts the planner, and with it the run: when the others are ready, so that its first goal
   /// need not be asked for again.
@@ -34,7 +37,7 @@ class RunProcesses {
 
   /// Ends the planner, so that no new goal comes.
   void end_planner();
-  /// Ends the four processes, and then the recorder, which writes out all it has.
+  /// Ends the processes, and then the recorder, which writes out all it has.
   void end_all();
 
   /// Most memory each ever held, by role.

@@ -173,23 +173,11 @@ void check_start(const run_config_t& config, const Scene& scene) {
   }
 }
 
-}  // namespace
-
-RunSetup prepare_run(const RunOptions& options) {
-  const SceneDescription description =
-      find_scene(options.scene, options.scenes_folder, given_options(options));
-  TriangleMesh mesh = load_mesh(description.file, description.options);
-  const Eigen::AlignedBox3d bounds = mesh.bounds_m();
-
-  RunSetup setup;
-  run_config_t& config = setup.config;
+/// What does not depend on where the scene comes from.
+void fill_rest(run_config_t& config, const RunOptions& options, const SceneDescription& description,
+               const Eigen::AlignedBox3d& bounds) {
   config.seed = options.seed;
   config.scene_name = description.name;
-  config.scene_file = std::filesystem::absolute(description.file).lexically_normal().string();
-  config.scene.unit_m = description.options.unit_m.value_or(0.0);
-  if (description.options.up) config.scene_up = name_of(*description.options.up);
-  config.scene_digest = mesh_digest(mesh);
-  config.has_scene = 1;
   config.program_version = program_version();
   config.strategy = "paper";
   fill_start(config, options, description, bounds);
@@ -200,6 +188,25 @@ RunSetup prepare_run(const RunOptions& options) {
   if (const std::string reason = check(config); !reason.empty()) {
     throw SetupError("the configuration cannot be right: " + reason);
   }
+}
+
+RunSetup prepare_in_scene(const RunOptions& options) {
+  if (!options.workspace_m.empty()) {
+    throw SetupError("--workspace goes with --without sensor_sim,base_sim: a scene has its own");
+  }
+  const SceneDescription description =
+      find_scene(options.scene.value_or("boxes"), options.scenes_folder, given_options(options));
+  TriangleMesh mesh = load_mesh(description.file, description.options);
+  const Eigen::AlignedBox3d bounds = mesh.bounds_m();
+
+  RunSetup setup;
+  run_config_t& config = setup.config;
+  config.has_scene = 1;
+  config.scene_file = std::filesystem::absolute(description.file).lexically_normal().string();
+  config.scene.unit_m = description.options.unit_m.value_or(0.0);
+  if (description.options.up) config.scene_up = name_of(*description.options.up);
+  config.scene_digest = mesh_digest(mesh);
+  fill_rest(config, options, description, bounds);
 
   setup.scene = std::make_shared<const Scene>(std::move(mesh));
   check_start(config, *setup.scene);
@@ -210,6 +217,45 @@ RunSetup prepare_run(const RunOptions& options) {
                              "closed, and where nothing is met nothing can be recovered");
   }
   return setup;
+}
+
+/// Without simulators nobody needs a scene; the user says what it would have said.
+RunSetup prepare_without_scene(const RunOptions& options) {
+  if (options.scene || options.unit || options.up) {
+    throw SetupError(
+        "without simulators there is no SCENE, --unit or --up: give --start and --workspace only");
+  }
+  if (options.start_m.empty() || options.workspace_m.empty()) {
+    throw SetupError(
+        "--without sensor_sim,base_sim needs --start X Y Z and --workspace X0 Y0 Z0 X1 Y1 Z1");
+  }
+  const Eigen::AlignedBox3d bounds(Eigen::Vector3d(options.workspace_m.data()),
+                                   Eigen::Vector3d(options.workspace_m.data() + 3));
+  if ((bounds.sizes().array() <= 0.0).any()) {
+    throw SetupError("--workspace: X0 Y0 Z0 must be below X1 Y1 Z1");
+  }
+  SceneDescription description;
+  description.name = "robot";
+  RunSetup setup;
+  fill_rest(setup.config, options, description, bounds);
+  const base_config_t& base = setup.config.base;
+  if (!bounds.contains(Eigen::Vector3d(base.start_m)) || base.start_m[2] < base.lift_min_m ||
+      base.start_m[2] > base.lift_max_m) {
+    throw SetupError("--start: outside --workspace, or not between --lift-min, " +
+                     two_decimals(base.lift_min_m) + " m, and --lift-max, " +
+                     two_decimals(base.lift_max_m) + " m");
+  }
+  return setup;
+}
+
+}  // namespace
+
+RunSetup prepare_run(const RunOptions& options) {
+  const auto without = [&options](const char* role) {
+    return std::find(options.without.begin(), options.without.end(), role) != options.without.end();
+  };
+  return without("sensor_sim") && without("base_sim") ? prepare_without_scene(options)
+                                                      : prepare_in_scene(options);
 }
 
 ReachParameters reach_of(const run_config_t& config) {

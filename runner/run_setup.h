@@ -21,11 +21,12 @@ class SetupError : public std::runtime_error {
 /// Everything a run needs to know before its first process starts.
 struct RunSetup {
   run_config_t config{};               ///< without the run's number
-  std::shared_ptr<const Scene> scene;  ///< for the scoring only
+  std::shared_ptr<const Scene> scene;  ///< for the scoring only; null when there is none
   std::vector<std::string> warnings;   ///< for the user
 };
 
-/// Loads the scene and turns options into the run's configuration, everything checked.
+/// Loads the scene, unless there are no simulators, and turns options into the run's configuration,
+/// everything checked.
 /// @throws SetupError, or SceneError where the scene itself cannot be used
 RunSetup prepare_run(const RunOptions& options);
 

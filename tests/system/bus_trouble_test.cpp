@@ -138,6 +138,7 @@ TEST(ForeignMember, ThatAsksAndSaysHowItIsDoesNotDisturbARun) {
   viewer.request<run_config_t>(0, 0);
   status_t status{};
   status.role = "viewer";
+  status.program_version = "viewer 1";
   viewer.publish(status);
   std::ofstream(folder / "go") << "go" << std::endl;
   EXPECT_EQ(run.wait(), 0) << run.output();
