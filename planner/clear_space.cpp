@@ -1,0 +1,129 @@
+#include "planner/clear_space.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace nextview {
+
+namespace {
+
+// The least squared distance, in whole voxels, that is not nearer than a length.
+int squared_voxels(double length_m, double voxel_size_m) {
+  const double voxels = length_m / voxel_size_m;
+  // 0.3 / 0.1 is a little below 3: a length of whole voxels must not lose one to rounding.
+  return static_cast<int>(std::ceil(voxels * voxels - 1e-6));
+}
+
+bool within_limits(const FeasibilityParameters& parameters, const Eigen::Vector3d& position_m) {
+  return (position_m.array() >= parameters.workspace_min_m.array()).all() &&
+         (position_m.array() <= parameters.workspace_max_m.array()).all() &&
+         position_m.z() >= parameters.lift_min_m && position_m.z() <= parameters.lift_max_m;
+}
+
+}  // namespace
+
+ClearSpace::ClearSpace(const VoxelMap& map, const FeasibilityParameters& parameters)
+    : parameters_((parameters.check(), parameters)), grid_(map.grid()), window_(map.window()) {
+  const double reach_m = std::max(parameters.clearance_m, parameters.body_radius_m);
+  const int margin = 1 + static_cast<int>(std::ceil(reach_m / grid_.voxel_size_m));
+  const VoxelIndex sides = window_.size + VoxelIndex::Constant(2 * margin);
+  first_ = window_.min - VoxelIndex::Constant(margin);
+  stride_ = {1, sides[0], sides[0] * sides[1]};
+  near_ = steps_nearer_than(parameters.clearance_m);
+  body_ = steps_nearer_than(parameters.body_radius_m);
+  if (near_.size() > kOccupiedMask || body_.size() > kUnknownMask / kUnknown) {
+    throw std::invalid_argument(
+        "clearance or body radius is too many voxels to plan paths with: choose larger voxels");
+  }
+  const std::size_t cells =
+      static_cast<std::size_t>(stride_[2]) * static_cast<std::size_t>(sides[2]);
+  kinds_.assign(cells, Kind::Unknown);
+  against_.assign(cells,
+                  kNotEmpty | kBeyondLimits | static_cast<std::uint32_t>(body_.size()) * kUnknown);
+  const VoxelIndex end = window_.min + window_.size;
+  for (int k = window_.min[2]; k < end[2]; ++k) {
+    for (int j = window_.min[1]; j < end[1]; ++j) {
+      for (int i = window_.min[0]; i < end[0]; ++i) {
+        const VoxelIndex index(i, j, k);
+        const Cell cell = this->cell(index);
+        if (within_limits(parameters_, grid_.center_m(index))) against_[cell] &= ~kBeyondLimits;
+        change(cell, kind_of(map.label(index)));
+      }
+    }
+  }
+}
+
+std::vector<int> ClearSpace::steps_nearer_than(double length_m) const {
+  const int limit = squared_voxels(length_m, grid_.voxel_size_m);
+  const int reach = static_cast<int>(std::ceil(std::sqrt(limit)));
+  std::vector<int> steps;
+  for (int k = -reach; k <= reach; ++k) {
+    for (int j = -reach; j <= reach; ++j) {
+      for (int i = -reach; i <= reach; ++i) {
+        if (i * i + j * j + k * k < limit) steps.push_back(step({i, j, k}));
+      }
+    }
+  }
+  return steps;
+}
+
+ClearSpace::Kind ClearSpace::kind_of(Label label) {
+  switch (label) {
+    case Label::Unmarked:
+    case Label::Occluded:
+    case Label::OcclusionPlane:
+      return Kind::Unknown;
+    case Label::Empty:
+      return Kind::Empty;
+    case Label::Occupied:
+      return Kind::Occupied;
+  }
+  throw std::logic_error("a label that does not exist");
+}
+
+bool ClearSpace::change(Cell cell, Kind to) {
+  const Kind from = kinds_[cell];
+  if (from == to) return false;
+  kinds_[cell] = to;
+  const auto add_around = [&](const std::vector<int>& steps, std::uint32_t count) {
+    for (const int step : steps) against_[cell + static_cast<Cell>(step)] += count;
+  };
+  if (from == Kind::Unknown) add_around(body_, ~kUnknown + 1);
+  if (to == Kind::Unknown) add_around(body_, kUnknown);
+  if (from == Kind::Occupied) add_around(near_, ~kOccupied + 1);
+  if (to == Kind::Occupied) add_around(near_, kOccupied);
+  if (from == Kind::Empty) against_[cell] |= kNotEmpty;
+  if (to == Kind::Empty) against_[cell] &= ~kNotEmpty;
+  return true;
+}
+
+std::vector<std::uint32_t> ClearSpace::update(const VoxelMap& map,
+                                              std::span<const std::uint32_t> changed_slots) {
+  std::vector<std::uint32_t> changed;
+  for (const std::uint32_t slot : changed_slots) {
+    if (change(cell(map.index_of_slot(slot)), kind_of(map.labels()[slot]))) changed.push_back(slot);
+  }
+  return changed;
+}
+
+void ClearSpace::block(const Eigen::Vector3d& center_m, double radius_m) {
+  const Cell center = cell(grid_.voxel_of(center_m));
+  for (const int step : steps_nearer_than(std::min(radius_m, parameters_.clearance_m))) {
+    const Cell cell = center + static_cast<Cell>(step);
+    against_[cell] |= kBlocked;
+    blocked_.push_back(cell);
+  }
+}
+
+void ClearSpace::unblock_all() {
+  for (const Cell cell : blocked_) against_[cell] &= ~kBlocked;
+  blocked_.clear();
+}
+
+std::size_t ClearSpace::memory_bytes() const {
+  return kinds_.capacity() * sizeof(Kind) + against_.capacity() * sizeof(std::uint32_t) +
+         blocked_.capacity() * sizeof(Cell);
+}
+
+}  // namespace nextview

@@ -1,0 +1,192 @@
+#include "planner/shortest_paths.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <stdexcept>
+
+namespace nextview {
+
+namespace {
+
+struct Direction {
+  VoxelIndex by;
+  std::uint32_t length;  // 1/1000 voxel
+};
+
+const std::vector<Direction>& directions() {
+  static const std::vector<Direction> all = [] {
+    constexpr std::array<std::uint32_t, 4> kLength = {0, 1000, 1414, 1732};
+    std::vector<Direction> result;
+    for (int k = -1; k <= 1; ++k) {
+      for (int j = -1; j <= 1; ++j) {
+        for (int i = -1; i <= 1; ++i) {
+          const VoxelIndex by(i, j, k);
+          if (by != VoxelIndex::Zero()) {
+            result.push_back({by, kLength[static_cast<std::size_t>(by.squaredNorm())]});
+          }
+        }
+      }
+    }
+    return result;
+  }();
+  return all;
+}
+
+constexpr std::uint8_t kStart = 26;  // where no step has led
+// More than the longest step, so that cells of different lengths never share a bucket.
+constexpr std::uint32_t kBuckets = 2048;
+
+}  // namespace
+
+void ShortestPaths::find(const ClearSpace& space, const VoxelMap& map,
+                         const Eigen::Vector3d& present_m, double departure_m) {
+  const VoxelIndex present = space.grid().voxel_of(present_m);
+  if (!space.window().contains(present)) {
+    throw std::invalid_argument("the sensor stands outside the map's window");
+  }
+  space_ = &space;
+  present_m_ = present_m;
+  lengths_.assign(space.cells(), kNoLength);
+  arrived_.resize(space.cells());
+  passage_.resize(space.cells(), Passage::AsClear);
+  for (const Cell cell : exempted_) passage_[cell] = Passage::AsClear;
+  exempted_.clear();
+  reached_.clear();
+  exempt_around(map, present, departure_m);
+  spread(space.cell(present));
+}
+
+int ShortestPaths::nearest_occupied(const VoxelMap& map, const VoxelIndex& voxel, int limit) const {
+  int nearest = limit;
+  const int reach = static_cast<int>(std::ceil(std::sqrt(limit)));
+  for (int k = -reach; k <= reach; ++k) {
+    for (int j = -reach; j <= reach; ++j) {
+      for (int i = -reach; i <= reach; ++i) {
+        const VoxelIndex step(i, j, k);
+        if (step.squaredNorm() < nearest && map.label(voxel + step) == Label::Occupied) {
+          nearest = step.squaredNorm();
+        }
+      }
+    }
+  }
+  return nearest;
+}
+
+void ShortestPaths::exempt_around(const VoxelMap& map, const VoxelIndex& present,
+                                  double departure_m) {
+  const FeasibilityParameters& parameters = space_->parameters();
+  const double voxel_m = space_->grid().voxel_size_m;
+  const auto squared = [&](double length_m) {
+    const double voxels = length_m / voxel_m;
+    return static_cast<int>(std::ceil(voxels * voxels - 1e-6));
+  };
+  const int clear = squared(parameters.clearance_m);
+  const int body = squared(parameters.body_radius_m);
+  const int departure = squared(departure_m);
+  const int body_reach = static_cast<int>(std::ceil(std::sqrt(body)));
+  // Beyond this no voxel can have an unknown one within the departure in its body.
+  const int reach = static_cast<int>(std::ceil(std::sqrt(departure))) + body_reach;
+  const int at_present = nearest_occupied(map, present, clear);
+  const auto unknown_near = [&](const VoxelIndex& voxel) {
+    for (int k = -body_reach; k <= body_reach; ++k) {
+      for (int j = -body_reach; j <= body_reach; ++j) {
+        for (int i = -body_reach; i <= body_reach; ++i) {
+          const VoxelIndex step(i, j, k);
+          if (step.squaredNorm() >= body) continue;
+          const Label label = map.label(voxel + step);
+          if (label == Label::Empty || label == Label::Occupied) continue;
+          if ((voxel + step - present).squaredNorm() >= departure) return true;
+        }
+      }
+    }
+    return false;
+  };
+  for (int k = -reach; k <= reach; ++k) {
+    for (int j = -reach; j <= reach; ++j) {
+      for (int i = -reach; i <= reach; ++i) {
+        const VoxelIndex voxel = present + VoxelIndex(i, j, k);
+        if (!space_->window().contains(voxel)) continue;
+        const Cell cell = space_->cell(voxel);
+        const bool is_present = voxel == present;
+        if (!is_present && (space_->is_clear(cell) || !space_->is_empty(cell) ||
+                            !space_->is_within_limits(cell) || space_->is_blocked(cell))) {
+          continue;
+        }
+        if (is_present && space_->is_clear(cell)) continue;
+        const int nearest =
+            space_->is_occupied_near(cell) ? nearest_occupied(map, voxel, clear) : clear;
+        if (!is_present && (nearest < at_present || unknown_near(voxel))) continue;
+        passage_[cell] = nearest < clear ? Passage::Departing : Passage::Exempt;
+        exempted_.push_back(cell);
+      }
+    }
+  }
+}
+
+void ShortestPaths::spread(Cell start) {
+  std::array<int, 26> step;
+  for (std::size_t d = 0; d < step.size(); ++d) step[d] = space_->step(directions()[d].by);
+  buckets_.resize(kBuckets);
+  lengths_[start] = 0;
+  arrived_[start] = kStart;
+  buckets_[0].push_back(start);
+  std::size_t waiting = 1;
+  for (std::uint32_t length = 0; waiting > 0; ++length) {
+    std::vector<Cell>& bucket = buckets_[length % kBuckets];
+    // No step is so long that it would lead into the same bucket, nor of no length.
+    for (const Cell cell : bucket) {
+      --waiting;
+      if (lengths_[cell] != length) continue;  // found again on a shorter path
+      reached_.push_back(space_->index(cell));
+      for (std::size_t d = 0; d < step.size(); ++d) {
+        const Cell next = cell + static_cast<Cell>(step[d]);
+        const std::uint32_t next_length = length + directions()[d].length;
+        if (lengths_[next] <= next_length || !may_step(cell, next)) continue;
+        lengths_[next] = next_length;
+        arrived_[next] = static_cast<std::uint8_t>(d);
+        buckets_[next_length % kBuckets].push_back(next);
+        ++waiting;
+      }
+    }
+    bucket.clear();
+  }
+}
+
+double ShortestPaths::length_m(const VoxelIndex& voxel) const {
+  if (!space_->window().contains(voxel)) return kUnreachable;
+  const std::uint32_t length = lengths_[space_->cell(voxel)];
+  return length == kNoLength ? kUnreachable : length * 1e-3 * space_->grid().voxel_size_m;
+}
+
+bool ShortestPaths::straight_is_clear(const Eigen::Vector3d& from_m,
+                                      const Eigen::Vector3d& to_m) const {
+  SegmentWalk walk(space_->grid(), from_m, to_m);
+  Cell last = space_->cell(walk.voxel());
+  while (!walk.at_end()) {
+    walk.step();
+    const Cell cell = space_->cell(walk.voxel());
+    if (!may_step(last, cell)) return false;
+    last = cell;
+  }
+  return true;
+}
+
+std::vector<Eigen::Vector3d> ShortestPaths::waypoints_m(const VoxelIndex& voxel) const {
+  std::vector<Eigen::Vector3d> path = {space_->grid().center_m(voxel)};
+  for (Cell cell = space_->cell(voxel); arrived_[cell] != kStart;) {
+    cell -= static_cast<Cell>(space_->step(directions()[arrived_[cell]].by));
+    path.push_back(space_->grid().center_m(space_->index(cell)));
+  }
+  path.back() = present_m_;
+  std::ranges::reverse(path);
+  // A corner is left out when the piece past it is clear too.
+  std::vector<Eigen::Vector3d> corners = {path.front()};
+  for (std::size_t i = 1; i + 1 < path.size(); ++i) {
+    if (!straight_is_clear(corners.back(), path[i + 1])) corners.push_back(path[i]);
+  }
+  if (path.size() > 1) corners.push_back(path.back());
+  return corners;
+}
+
+}  // namespace nextview

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "planner/clear_space.h"
+
+namespace nextview {
+
+/// The shortest paths from where the robot is to every position it can get to through clear space.
+///
+/// Paths lead over the voxel grid, from a voxel to any of the 26 around it, and their lengths are
+/// real ones (1, sqrt 2, sqrt 3 voxels, to 1/1000). Both ends of a step are clear; between two
+/// clear voxels nothing can be nearer than an eighth of a voxel less than at them.
+///
+/// Where the robot stands more is allowed, for it is there: unknown voxels nearer to it than the
+/// departure do not count, and when something turned out to be within the clearance the path may
+/// begin there, but must not come nearer to anything Occupied than the present position is, and
+/// once it has got clear it must stay so.
+class ShortestPaths {
+ public:
+  static constexpr double kUnreachable = std::numeric_limits<double>::infinity();
+
+  /// Finds them all, by Dijkstra's method; to be called again whenever the space has changed.
+  /// @param departure_m unknown voxels nearer to the present one do not count
+  /// @throws std::invalid_argument when the present position lies outside the window
+  void find(const ClearSpace& space, const VoxelMap& map, const Eigen::Vector3d& present_m,
+            double departure_m);
+
+  /// The length of the path to a voxel, or kUnreachable.
+  double length_m(const VoxelIndex& voxel) const;
+  /// Voxels with a path, the present one included, nearest first.
+  const std::vector<VoxelIndex>& reached() const { return reached_; }
+
+  /// The path to a voxel that has one: the present position, the corners, the voxel's centre. Of
+  /// the voxels between two of them, which a straight piece leads through, each may be passed.
+  std::vector<Eigen::Vector3d> waypoints_m(const VoxelIndex& voxel) const;
+
+ private:
+  using Cell = ClearSpace::Cell;
+  // How a cell may be passed.
+  enum class Passage : std::uint8_t {
+    AsClear,    // as the space says
+    Exempt,     // clear but for unknown voxels within the departure
+    Departing,  // within the clearance, no nearer to anything than the present position
+  };
+  static constexpr std::uint32_t kNoLength = 0xffffffff;
+
+  void exempt_around(const VoxelMap& map, const VoxelIndex& present, double departure_m);
+  int nearest_occupied(const VoxelMap& map, const VoxelIndex& voxel, int limit) const;
+  bool may_pass(Cell cell) const {
+    return space_->is_clear(cell) || passage_[cell] != Passage::AsClear;
+  }
+  // From a cell that may be passed to the next.
+  bool may_step(Cell from, Cell to) const {
+    return may_pass(to) &&
+           (passage_[to] != Passage::Departing || passage_[from] == Passage::Departing);
+  }
+  void spread(Cell start);
+  bool straight_is_clear(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m) const;
+
+  const ClearSpace* space_ = nullptr;
+  Eigen::Vector3d present_m_ = Eigen::Vector3d::Zero();
+  std::vector<std::uint32_t> lengths_;  // by cell, 1/1000 voxel
+  std::vector<std::uint8_t> arrived_;   // by cell: the direction of the last step there
+  std::vector<Passage> passage_;        // by cell
+  std::vector<Cell> exempted_;
+  std::vector<VoxelIndex> reached_;
+  std::vector<std::vector<Cell>> buckets_;  // cells still to be left, by length
+};
+
+}  // namespace nextview
