@@ -67,6 +67,8 @@ class FreeSpaceField {
   int steps_from(const VoxelIndex& index) const { return std::max(free_distance(index), 1); }
   /// All bytes, with three more behind the last so that four can be read from any offset.
   const std::uint8_t* bytes() const { return bytes_.data(); }
+  /// How many offsets there are; only those of the window and one layer around it are valid.
+  std::size_t size() const { return bytes_.size() - 3; }
   /// log2 of the distance in bytes between neighbours along x, y, z.
   std::array<int, 3> shifts() const { return shift_; }
   std::size_t memory_bytes() const { return bytes_.capacity() + distance_.memory_bytes(); }

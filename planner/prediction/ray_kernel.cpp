@@ -114,6 +114,11 @@ HWY_INLINE void finish(const RayBundle& bundle, const Walk& walk, const Rays& ra
     hn::StoreU(hn::IfThenElse(occupied, offset_of<direction>(walk, rays), hn::Set(d, -1)), d,
                outcomes.occupied_at + rays.first);
   }
+  if (outcomes.met_at != nullptr) {
+    const auto met = hn::Ne(kind, hn::Set(d, FreeSpaceField::kOutside));
+    hn::StoreU(hn::IfThenElse(met, offset_of<direction>(walk, rays), hn::Set(d, -1)), d,
+               outcomes.met_at + rays.first);
+  }
   if (outcomes.occupied != nullptr) {
     store_bits(occupied, rays.first, outcomes.occupied);
     store_bits(plane, rays.first, outcomes.occlusion_plane);

@@ -75,6 +75,7 @@ struct RayCounts {
 struct RayOutcomes {
   RayCounts* counts = nullptr;          ///< by group; added to
   std::int32_t* occupied_at = nullptr;  ///< by ray: offset of the Occupied voxel met, or -1
+  std::int32_t* met_at = nullptr;       ///< by ray: offset of the voxel met, or -1 when none was
   std::uint8_t* occupied = nullptr;     ///< bits that are set where a ray met an Occupied voxel;
   std::uint8_t* occlusion_plane = nullptr;  ///< to be clear beforehand, and all three be there
   std::uint8_t* unseen = nullptr;
