@@ -26,8 +26,12 @@ struct Decision {
   SensorPose pose;
   std::vector<Eigen::Vector3d> waypoints_m;  ///< present position first, pose.position_m last
   Fitness fitness;                           ///< predicted, at the pose
-  int iterations = 0;                        ///< of the search
-  int evaluations = 0;                       ///< positions tried, = tried.size()
+  std::string strategy;                      ///< that decided
+  std::string reason;                        ///< in words, for people
+  double expected_gain_m2 = 0.0;  ///< new surface the view is expected to show; 0: not estimated
+  double overlap = 0.0;           ///< share of it that is known already; 0: not estimated
+  int iterations = 0;             ///< of the search
+  int evaluations = 0;            ///< positions tried, = tried.size()
   std::vector<TriedPosition> tried;
 };
 

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "planner/segment_walk.h"
+
 namespace nextview {
 
 namespace {

@@ -9,10 +9,11 @@ namespace nextview {
 
 namespace {
 
-constexpr std::array<StopReason, 9> kStopReasons = {
-    StopReason::NothingNew,     StopReason::QualityReached, StopReason::ViewLimit,
-    StopReason::NoFeasibleGoal, StopReason::DigestMismatch, StopReason::NoAnswer,
-    StopReason::ProcessDied,    StopReason::BusFailed,      StopReason::Interrupted};
+constexpr std::array<StopReason, 10> kStopReasons = {
+    StopReason::NothingLeft, StopReason::NothingNew,     StopReason::QualityReached,
+    StopReason::ViewLimit,   StopReason::NoFeasibleGoal, StopReason::DigestMismatch,
+    StopReason::NoAnswer,    StopReason::ProcessDied,    StopReason::BusFailed,
+    StopReason::Interrupted};
 
 bool nothing_new(std::span<const ViewFacts> views, const StopParameters& parameters) {
   const auto window = static_cast<std::size_t>(parameters.stop_window_views);
@@ -28,6 +29,8 @@ std::span<const StopReason> all_stop_reasons() { return kStopReasons; }
 
 std::string_view to_string(StopReason reason) {
   switch (reason) {
+    case StopReason::NothingLeft:
+      return "nothing_left";
     case StopReason::NothingNew:
       return "nothing_new";
     case StopReason::QualityReached:
@@ -59,6 +62,8 @@ std::optional<StopReason> stop_reason_from_string(std::string_view name) {
 
 std::string_view describe(StopReason reason) {
   switch (reason) {
+    case StopReason::NothingLeft:
+      return "From nowhere that can be reached anything new is to be seen.";
     case StopReason::NothingNew:
       return "No more unseen area is covered.";
     case StopReason::QualityReached:

@@ -8,8 +8,9 @@
 
 namespace nextview {
 
-/// Why a run ended. README lists the names; the first three are a success.
+/// Why a run ended. README lists the names; the first four are a success.
 enum class StopReason {
+  NothingLeft,     ///< from nowhere that can be reached anything new is to be seen
   NothingNew,      ///< P23 rule 1: no more unseen area is covered
   QualityReached,  ///< P23 rule 2: the same, and every voxel's quality is above the threshold
   ViewLimit,       ///< as many views as asked for

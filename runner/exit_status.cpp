@@ -6,6 +6,7 @@ namespace nextview {
 
 int exit_status(StopReason reason) {
   switch (reason) {
+    case StopReason::NothingLeft:
     case StopReason::NothingNew:
     case StopReason::QualityReached:
     case StopReason::ViewLimit:

@@ -85,7 +85,7 @@ TEST(StopReasons, RoundTripThroughTheirNames) {
     EXPECT_FALSE(describe(reason).empty());
     names.insert(to_string(reason));
   }
-  EXPECT_EQ(names.size(), 9u);
+  EXPECT_EQ(names.size(), 10u);
   EXPECT_EQ(stop_reason_from_string("bored"), std::nullopt);
 }
 

@@ -1,0 +1,292 @@
+#include "planner/surface_strategy.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+#include <utility>
+
+namespace nextview {
+
+namespace {
+
+/// With fewer positions than this their spacing is halved.
+constexpr std::size_t kFewPositions = 40;
+/// So many positions are refined.
+constexpr std::size_t kRefined = 4;
+
+bool is_unknown(std::uint8_t byte) {
+  return byte == FreeSpaceField::kUnseen || byte == FreeSpaceField::kOcclusionPlane;
+}
+
+SurfaceGain::Parameters gain_parameters(const SurfaceParameters& parameters) {
+  return {parameters.grow_planes ? parameters.unknown_weight : 1.0, parameters.improvement_weight,
+          parameters.min_overlap};
+}
+
+}  // namespace
+
+void SurfaceParameters::check() const {
+  const auto require = [](bool holds, const char* parameter, const char* rule) {
+    if (!holds) throw std::invalid_argument(std::string(parameter) + " must be " + rule);
+  };
+  require(path_cost_per_m >= 0.0 && std::isfinite(path_cost_per_m), "path_cost_per_m", "0 or more");
+  require(unknown_weight >= 0.0 && unknown_weight <= 1.0, "unknown_weight", "in [0, 1]");
+  require(improvement_weight >= 0.0 && improvement_weight <= 10.0, "improvement_weight",
+          "in [0, 10]");
+  require(min_overlap >= 0.0 && min_overlap < 1.0, "min_overlap", "in [0, 1)");
+  require(least_new_area_m2 > 0.0 && std::isfinite(least_new_area_m2), "least_new_area_m2",
+          "positive");
+  require(first_departure_m >= 0.0 && first_departure_m <= 5.0, "first_departure_m",
+          "a length from 0 to 5 m");
+  require(departure_m >= 0.0 && departure_m <= 5.0, "departure_m", "a length from 0 to 5 m");
+  require(spacing_voxels >= 1, "spacing_voxels", "at least 1");
+  feasibility.check();
+}
+
+SurfaceStrategy::SurfaceStrategy(const PredictionRaster& raster, double voxel_size_m,
+                                 std::vector<Orientation> orientations,
+                                 const SurfaceParameters& parameters)
+    : parameters_((parameters.check(), parameters)),
+      voxel_size_m_(voxel_size_m),
+      range_max_m_(raster.range_max_m),
+      gain_(raster, voxel_size_m, std::move(orientations), gain_parameters(parameters)),
+      candidates_(gain_, parameters.path_cost_per_m) {}
+
+KnownSpace::Surfaces SurfaceStrategy::surfaces() const {
+  return parameters_.improvement_weight > 0.0 ? KnownSpace::Surfaces::Keep
+                                              : KnownSpace::Surfaces::Leave;
+}
+
+void SurfaceStrategy::view_folded(const FoldedView& folded) {
+  const auto append = [](std::vector<std::uint32_t>& to, const std::vector<std::uint32_t>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  append(changed_slots_, folded.report.changed_slots);
+  append(updated_surfaces_, folded.report.updated_surfaces);
+  if (!home_) home_ = folded.pose;
+}
+
+SurfaceGain::Known SurfaceStrategy::known(const KnownSpace& space) const {
+  return {space.field(), in_vain_, grown_ ? &*grown_ : nullptr,
+          space.keeps_surfaces() ? &space.surfaces() : nullptr};
+}
+
+void SurfaceStrategy::begin_with(const KnownSpace& space) {
+  clear_.emplace(space.map(), parameters_.feasibility);
+  if (parameters_.grow_planes) grown_.emplace(space.map());
+  in_vain_.assign(space.field().size(), 0);
+  aimed_at_.clear();
+  refused_m_.clear();
+}
+
+void SurfaceStrategy::follow_map(const KnownSpace& space, int view) {
+  if (followed_view_ == view) return;
+  followed_view_ = view;
+  const VoxelMap& map = space.map();
+  std::vector<std::uint32_t> changed;
+  if (!clear_ || clear_->window() != map.window()) {
+    begin_with(space);
+  } else {
+    changed = clear_->update(map, changed_slots_);
+    if (grown_) grown_->update(map, changed);
+  }
+  candidates_.begin_view(view, known(space));
+  const auto note = [&](std::span<const std::uint32_t> slots) {
+    std::vector<std::uint32_t> offsets;
+    for (const std::uint32_t slot : slots) {
+      offsets.push_back(static_cast<std::uint32_t>(space.field().offset(map.index_of_slot(slot))));
+    }
+    candidates_.offsets_changed(known(space), offsets);
+  };
+  note(changed);
+  if (grown_) note(grown_->changed());
+  if (space.keeps_surfaces()) note(updated_surfaces_);
+  changed_slots_.clear();
+  updated_surfaces_.clear();
+  doubt_what_was_not_seen(space);
+  forget_refusals_near(map, changed);
+}
+
+void SurfaceStrategy::doubt_what_was_not_seen(const KnownSpace& space) {
+  std::vector<std::uint32_t> doubted;
+  for (const std::uint32_t offset : aimed_at_) {
+    if (!is_unknown(space.field().bytes()[offset])) continue;
+    if (in_vain_[offset] < 255) ++in_vain_[offset];
+    doubted.push_back(offset);
+  }
+  candidates_.offsets_changed(known(space), doubted);
+  aimed_at_.clear();
+}
+
+void SurfaceStrategy::forget_refusals_near(const VoxelMap& map,
+                                           std::span<const std::uint32_t> changed_slots) {
+  if (refused_m_.empty()) return;
+  const double near_m = parameters_.feasibility.clearance_m + voxel_size_m_;
+  const auto known_better = [&](const Eigen::Vector3d& refused_m) {
+    return std::ranges::any_of(changed_slots, [&](std::uint32_t slot) {
+      return (map.grid().center_m(map.index_of_slot(slot)) - refused_m).norm() < near_m;
+    });
+  };
+  if (std::erase_if(refused_m_, known_better) == 0) return;
+  clear_->unblock_all();
+  for (const Eigen::Vector3d& refused_m : refused_m_) {
+    clear_->block(refused_m, parameters_.feasibility.clearance_m);
+  }
+}
+
+// Why the base refused is not known, only that something is too near on the way: most likely at the
+// goal, and when that was not it at a corner, where ways pass obstacles.
+void SurfaceStrategy::take_refusal(const Situation& situation) {
+  if (situation.refused.empty()) return;
+  aimed_at_.clear();  // nobody went there
+  const auto keep_out_of = [&](const Eigen::Vector3d& position_m) {
+    refused_m_.push_back(position_m);
+    clear_->block(position_m, parameters_.feasibility.clearance_m);
+  };
+  keep_out_of(situation.refused.back().position_m);
+  if (situation.refused.size() < 2) return;
+  for (std::size_t i = 1; i + 1 < way_.size(); ++i) keep_out_of(way_[i]);
+}
+
+std::vector<VoxelIndex> SurfaceStrategy::positions(const Situation& situation, int spacing) const {
+  const VoxelIndex present = clear_->grid().voxel_of(situation.present.position_m);
+  // The seed moves the lattice: runs differ in nothing else.
+  const auto phase = [&](int axis) {
+    return static_cast<int>(situation.seed >> (2 * axis) & 3) % spacing;
+  };
+  std::vector<VoxelIndex> positions = {present};
+  const VoxelIndex lattice(phase(0), phase(1), phase(2));
+  for (const VoxelIndex& voxel : paths_.reached()) {
+    const VoxelIndex from = voxel - lattice;
+    const bool on_lattice =
+        from[0] % spacing == 0 && from[1] % spacing == 0 && from[2] % spacing == 0;
+    if (on_lattice && voxel != present) positions.push_back(voxel);
+  }
+  return positions;
+}
+
+std::vector<VoxelIndex> SurfaceStrategy::enough_positions(const Situation& situation) const {
+  int spacing = parameters_.spacing_voxels;
+  std::vector<VoxelIndex> result = positions(situation, spacing);
+  while (result.size() < kFewPositions && spacing > 1) {
+    spacing /= 2;
+    result = positions(situation, spacing);
+  }
+  return result;
+}
+
+CandidateView SurfaceStrategy::refined(const SurfaceGain::Known& known, CandidateView candidate) {
+  for (const int step : {2, 1}) {
+    const VoxelIndex around = candidate.voxel;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (const int sign : {-1, 1}) {
+        VoxelIndex voxel = around;
+        voxel[axis] += sign * step;
+        if (paths_.length_m(voxel) == ShortestPaths::kUnreachable) continue;
+        const CandidateView other = candidates_.judge(known, paths_, voxel);
+        if (other.score > candidate.score) candidate = other;
+      }
+    }
+  }
+  return candidate;
+}
+
+std::vector<CandidateView> SurfaceStrategy::best_views(const SurfaceGain::Known& known,
+                                                       std::span<const VoxelIndex> positions) {
+  std::vector<CandidateView> best = candidates_.best(known, paths_, positions, kRefined);
+  for (CandidateView& candidate : best) candidate = refined(known, candidate);
+  std::ranges::stable_sort(best, std::ranges::greater(), &CandidateView::score);
+  return best;
+}
+
+NextView SurfaceStrategy::next_view(const Situation& situation) {
+  follow_map(situation.space, situation.view);
+  take_refusal(situation);
+  const bool first_move = situation.view == 2;
+  paths_.find(*clear_, situation.space.map(), situation.present.position_m,
+              first_move ? parameters_.first_departure_m : parameters_.departure_m);
+  const SurfaceGain::Known known = this->known(situation.space);
+  const std::vector<VoxelIndex> positions = enough_positions(situation);
+  std::vector<CandidateView> best = best_views(known, positions);
+  if (best.empty() || area_m2(best.front().value) < parameters_.least_new_area_m2) {
+    // What is far may still be worth the way.
+    const CandidateView most = candidates_.most_valuable(known, paths_, positions);
+    if (area_m2(most.value) < parameters_.least_new_area_m2) {
+      return nothing_left(situation, positions.size());
+    }
+    best = {refined(known, most)};
+  }
+  return decision(known, best, positions.size());
+}
+
+Decision SurfaceStrategy::decision(const SurfaceGain::Known& known,
+                                   std::span<const CandidateView> best, std::size_t positions) {
+  const CandidateView& chosen = best.front();
+  const Orientation& orientation = gain_.orientations()[chosen.view.orientation];
+  gain_.look_from(known, chosen.voxel);
+  aimed_at_ = gain_.aimed_at(known, chosen.view.orientation);
+  way_ = paths_.waypoints_m(chosen.voxel);
+
+  Decision decision;
+  decision.waypoints_m = way_;
+  decision.pose = {way_.back(), orientation.pan_rad, orientation.tilt_rad};
+  decision.fitness = fitness(gain_.counts(known, chosen.view.orientation), FactorWeights{});
+  decision.strategy = kName;
+  decision.expected_gain_m2 = area_m2(chosen.view.new_voxels);
+  decision.overlap = chosen.view.overlap;
+  decision.reason = in_words(best, positions);
+  for (const CandidateView& tried : candidates_.judged()) {
+    const Orientation& direction = gain_.orientations()[tried.view.orientation];
+    decision.tried.push_back({clear_->grid().center_m(tried.voxel), direction.pan_rad,
+                              direction.tilt_rad, tried.score / std::max(chosen.score, 1e-9)});
+  }
+  decision.evaluations = static_cast<int>(decision.tried.size());
+  return decision;
+}
+
+std::string SurfaceStrategy::in_words(std::span<const CandidateView> best,
+                                      std::size_t positions) const {
+  const auto expects = [&](const CandidateView& candidate) {
+    std::array<char, 160> text{};
+    std::snprintf(text.data(), text.size(), "%.2f m2 of new surface, %.1f m away",
+                  area_m2(candidate.view.new_voxels), candidate.path_m);
+    std::string words = text.data();
+    if (candidate.view.improvement > 0.0) {
+      std::snprintf(text.data(), text.size(), ", and %.2f m2 seen better",
+                    area_m2(candidate.view.improvement));
+      words += text.data();
+    }
+    return words;
+  };
+  std::string words = "expects " + expects(best.front());
+  if (best.size() > 1) words += "; second came " + expects(best[1]);
+  return words + "; " + std::to_string(candidates_.judged().size()) + " of " +
+         std::to_string(positions) + " positions looked from";
+}
+
+NextView SurfaceStrategy::nothing_left(const Situation& situation, std::size_t positions) {
+  const VoxelMap& map = situation.space.map();
+  const VoxelIndex home = map.grid().voxel_of(home_->position_m);
+  const bool at_home = map.grid().voxel_of(situation.present.position_m) == home;
+  const bool can_go_home = paths_.length_m(home) != ShortestPaths::kUnreachable;
+  if (parameters_.return_home && !at_home && can_go_home) {
+    Decision decision;
+    way_ = paths_.waypoints_m(home);
+    way_.back() = home_->position_m;
+    decision.waypoints_m = way_;
+    decision.pose = *home_;
+    decision.strategy = kName;
+    decision.reason = "nothing is left to see: home";
+    return decision;
+  }
+  left_unseen_ = unseen_boundary(map, *clear_, paths_, range_max_m_);
+  std::array<char, 160> text{};
+  std::snprintf(text.data(), text.size(),
+                "From none of %zu positions is more than %.2f m2 of new surface expected; ",
+                positions, parameters_.least_new_area_m2);
+  return Ending{StopReason::NothingLeft, text.data() + describe(*left_unseen_)};
+}
+
+}  // namespace nextview
