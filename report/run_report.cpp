@@ -170,6 +170,7 @@ void write_summary(std::ostream& out, const FinishedRun& run) {
     json["visible_surface"] = {{"area_m2", run.visible->area_m2()},
                                {"samples", run.visible->points_m.size()},
                                {"samples_of_scene", run.visible->samples},
+                               {"samples_per_m2", run.visible->samples_per_m2},
                                {"positions", run.visible->positions}};
   }
   json["scene_file"] = run.config.scene_file;

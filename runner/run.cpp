@@ -12,6 +12,7 @@
 #include "base_sim/base.h"
 #include "lcmtypes/ask_timer.h"
 #include "runner/run_signals.h"
+#include "scoring/kept_file.h"
 #include "scoring/visible_surface.h"
 #include "sensor/sensor_config.h"
 
@@ -157,11 +158,13 @@ void Run::start_scoring() {
   std::promise<VisibleSurface> promise;
   visible_coming_ = promise.get_future();
   scoring_ = std::jthread([scene = setup_.scene, config = setup_.config,
+                           cache = cache_folder(options_.cache), progress = scoring_progress_,
                            promise = std::move(promise)](const std::stop_token& stop) mutable {
     give_way();
     try {
-      promise.set_value(visible_surface(*scene, start_pose_of(config).position_m, reach_of(config),
-                                        config.sensor.range_max_m, stop));
+      promise.set_value(kept_visible_surface(
+          cache, *scene, std::string(config.scene_digest), start_pose_of(config).position_m,
+          visibility_of(config), stop, progress.get()));
     } catch (...) {
       promise.set_exception(std::current_exception());
     }
@@ -282,13 +285,13 @@ FinishedRun Run::finish(Clock::time_point program_start) {
   getrusage(RUSAGE_SELF, &usage);
   run.peak_memory_bytes["run"] = std::int64_t{usage.ru_maxrss} * 1024;
   AskTimer patience = reminder_after(milliseconds(1000));
-  bool explained = false;
   while (visible_coming_.valid() && noted_signal() == 0 && !ended_early_) {
     visible_coming_.wait_for(milliseconds(50));
     make_rows();
-    if (visible_coming_.valid() && !explained && patience.due()) {
-      progress_.say("working out how much of the scene can be seen at all, for the coverage");
-      explained = true;
+    if (visible_coming_.valid() && patience.due()) {
+      const std::int64_t of = std::max<std::int64_t>(1, scoring_progress_->of);
+      progress_.say("working out how much of the scene can be seen at all, for the coverage: " +
+                    std::to_string(100 * scoring_progress_->done / of) + " %");
     }
   }
   scoring_.request_stop();

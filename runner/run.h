@@ -90,6 +90,7 @@ class Run {
   std::future<VisibleSurface> visible_coming_;
   std::optional<VisibleSurface> visible_;
   std::string coverage_unknown_;  ///< why, when it cannot be worked out
+  std::shared_ptr<VisibilityProgress> scoring_progress_ = std::make_shared<VisibilityProgress>();
   std::jthread scoring_;
 };
 

@@ -103,8 +103,12 @@ void add_run_options(CLI::App& app, RunOptions& options) {
       ->check(number_in(0.1, 1e6))
       ->capture_default_str()
       ->group(group);
-  app.add_flag("--no-coverage", options.no_coverage,
-               "Do not work out surface_coverage, which takes minutes in a large building")
+  app.add_option("--cache", options.cache,
+                 "Folder that keeps what can be seen of a scene, which takes minutes in a large "
+                 "building; default: NEXTVIEW_CACHE, else XDG_CACHE_HOME/nextview, else "
+                 "~/.cache/nextview")
+      ->group(group);
+  app.add_flag("--no-coverage", options.no_coverage, "Do not work out surface_coverage")
       ->group(group);
   app.add_flag("--verbose", options.verbose, "Say more: port, processes, counters, timings")
       ->group(group);

@@ -64,6 +64,7 @@ struct RunOptions {
 
   std::string lcm_url;  ///< empty: LCM_DEFAULT_URL, else a free port of its own
   double patience_s = 60.0;
+  std::string cache;         ///< where results that take long are kept; empty: see cache_folder
   bool no_coverage = false;  ///< surface_coverage is not worked out
   bool verbose = false;
 };

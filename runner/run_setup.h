@@ -8,7 +8,7 @@
 #include "lcmtypes/channels.h"
 #include "runner/run_options.h"
 #include "scene/scene.h"
-#include "scoring/reachable_positions.h"
+#include "scoring/visible_surface.h"
 
 namespace nextview {
 
@@ -30,7 +30,7 @@ struct RunSetup {
 /// @throws SetupError, or SceneError where the scene itself cannot be used
 RunSetup prepare_run(const RunOptions& options);
 
-/// Where a robot of this run may be.
-ReachParameters reach_of(const run_config_t& config);
+/// Where a robot of this run may be, and what its sensor could see from there.
+VisibilityParameters visibility_of(const run_config_t& config);
 
 }  // namespace nextview

@@ -2,12 +2,20 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <stdexcept>
 #include <utility>
 
 namespace nextview {
 namespace {
+
+/// Fewer positions are looked at one by one.
+constexpr std::int32_t kLeafPositions = 4;
+/// For fewer positions a union of shadows costs more than it saves.
+constexpr std::int32_t kUnionPositions = 32;
+/// Points after which a union is tried again where it was not clear.
+constexpr std::uint8_t kTryAgainAfter = 4;
+/// Rays cast for what a union leaves open; more are better spent on smaller boxes.
+constexpr int kMostCasts = 256;
 
 double squared(double value) { return value * value; }
 
@@ -24,82 +32,141 @@ std::optional<std::uint32_t> hidden_by(const Scene& scene, const Eigen::Vector3d
   return hit->triangle;
 }
 
-PositionTree::PositionTree(const Scene& scene, const TriangleNeighbours& neighbours,
-                           std::vector<Eigen::Vector3d> positions, double range_max_m)
-    : scene_(&scene),
-      positions_(std::move(positions)),
-      range_max_m_(range_max_m),
-      shadow_(neighbours) {
+PositionTree::PositionTree(std::vector<Eigen::Vector3d> positions)
+    : positions_(std::move(positions)) {
   if (positions_.empty()) throw std::invalid_argument("position tree: no positions");
-  std::vector<std::int32_t> order(positions_.size());
-  std::iota(order.begin(), order.end(), 0);
-  nodes_.reserve(2 * positions_.size());
-  root_ = build(order.data(), order.data() + order.size());
+  nodes_.reserve(2 * positions_.size() / kLeafPositions + 1);
+  build(0, static_cast<std::int32_t>(positions_.size()));
 }
 
-std::int32_t PositionTree::build(std::int32_t* begin, std::int32_t* end) {
-  const auto position = [this](std::int32_t i) -> const Eigen::Vector3d& {
-    return positions_[static_cast<std::size_t>(i)];
-  };
+std::int32_t PositionTree::build(std::int32_t begin, std::int32_t end) {
   Node node;
-  for (const std::int32_t* i = begin; i != end; ++i) node.box.extend(position(*i));
-  const Eigen::Vector3d middle = node.box.center();
-  node.representative = *std::min_element(begin, end, [&](std::int32_t a, std::int32_t b) {
-    return (position(a) - middle).squaredNorm() < (position(b) - middle).squaredNorm();
-  });
-  if (end - begin > 1) {
+  node.begin = begin;
+  node.end = end;
+  for (std::int32_t i = begin; i < end; ++i) node.box.extend(position_m(i));
+  if (node.size() > kLeafPositions) {
     Eigen::Index axis = 0;
     node.box.sizes().maxCoeff(&axis);
-    std::int32_t* const half = begin + (end - begin) / 2;
-    std::nth_element(begin, half, end, [&](std::int32_t a, std::int32_t b) {
-      return position(a)[axis] < position(b)[axis];
-    });
+    const std::int32_t half = begin + node.size() / 2;
+    std::nth_element(
+        positions_.begin() + begin, positions_.begin() + half, positions_.begin() + end,
+        [axis](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a[axis] < b[axis]; });
     node.left = build(begin, half);
     node.right = build(half, end);
   }
+  const Eigen::Vector3d middle = node.box.center();
+  const auto nearest =
+      std::min_element(positions_.begin() + begin, positions_.begin() + end,
+                       [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+                         return (a - middle).squaredNorm() < (b - middle).squaredNorm();
+                       });
+  node.middle = static_cast<std::int32_t>(nearest - positions_.begin());
   nodes_.push_back(node);
   return static_cast<std::int32_t>(nodes_.size()) - 1;
 }
 
-bool PositionTree::sees(const Eigen::Vector3d& point_m) {
-  const Eigen::Vector3d& likely = positions_[static_cast<std::size_t>(last_seen_from_)];
-  if ((likely - point_m).norm() <= range_max_m_ && !hidden_by(*scene_, point_m, likely)) {
-    return true;
-  }
-  return node_sees(root_, point_m, std::nullopt);
+PositionSearch::PositionSearch(const Scene& scene, const TriangleNeighbours& neighbours,
+                               const PositionTree& tree, double range_max_m)
+    : scene_(&scene),
+      tree_(&tree),
+      range_max_m_(range_max_m),
+      surface_(neighbours),
+      union_(scene, neighbours),
+      memory_(static_cast<std::size_t>(tree.root()) + 1) {}
+
+bool PositionSearch::sees(const Eigen::Vector3d& point_m) {
+  point_m_ = point_m;
+  return position_sees(last_seen_from_) || node_sees(tree_->root(), std::nullopt);
 }
 
-bool PositionTree::node_sees(std::int32_t at, const Eigen::Vector3d& point_m,
-                             std::optional<Blocked> known) {
-  Node& node = nodes_[static_cast<std::size_t>(at)];
-  if (node.box.squaredExteriorDistance(point_m) > squared(range_max_m_)) return false;
-  const Eigen::Vector3d& position = positions_[static_cast<std::size_t>(node.representative)];
-  if (node.last_shadow && shadow_.hides(*node.last_shadow, point_m, position, node.box)) {
+bool PositionSearch::position_sees(std::int32_t position) {
+  const Eigen::Vector3d& at = tree_->position_m(position);
+  if ((at - point_m_).norm() > range_max_m_ || hidden_by(*scene_, point_m_, at)) return false;
+  last_seen_from_ = position;
+  return true;
+}
+
+bool PositionSearch::node_sees(std::int32_t at, std::optional<Blocked> known) {
+  const PositionTree::Node& node = tree_->node(at);
+  if (node.box.squaredExteriorDistance(point_m_) > squared(range_max_m_)) return false;
+  if (node.left < 0) {
+    for (std::int32_t i = node.begin; i < node.end; ++i) {
+      if (position_sees(i)) return true;
+    }
     return false;
   }
-  if (!known || known->position != node.representative) {
-    const auto triangle = hidden_by(*scene_, point_m, position);
-    if (!triangle && (position - point_m).norm() <= range_max_m_) {
-      last_seen_from_ = node.representative;
+  Memory& memory = memory_[static_cast<std::size_t>(at)];
+  const Eigen::Vector3d& middle = tree_->position_m(node.middle);
+  if (memory.surface && surface_.hides(*memory.surface, point_m_, middle, node.box)) return false;
+  if (!known || known->position != node.middle) {
+    const auto triangle = hidden_by(*scene_, point_m_, middle);
+    if (!triangle && (middle - point_m_).norm() <= range_max_m_) {
+      last_seen_from_ = node.middle;
       return true;
     }
     known.reset();
-    if (triangle) known = Blocked{node.representative, *triangle};
+    if (triangle) known = Blocked{node.middle, *triangle};
   }
-  if (known && shadow_.hides(known->triangle, point_m, position, node.box)) {
-    node.last_shadow = known->triangle;
+  if (known && surface_.hides(known->triangle, point_m_, middle, node.box)) {
+    memory.surface = known->triangle;
     return false;
   }
-  if (node.left < 0) return false;
+  if (known && node.size() >= kUnionPositions) {
+    if (const std::optional<bool> seen = union_sees(at)) return *seen;
+  }
 
   std::pair<std::int32_t, std::int32_t> children{node.left, node.right};
   const auto distance = [&](std::int32_t child) {
-    return nodes_[static_cast<std::size_t>(child)].box.squaredExteriorDistance(point_m);
+    return tree_->node(child).box.squaredExteriorDistance(point_m_);
   };
   if (distance(children.second) < distance(children.first)) {
     std::swap(children.first, children.second);
   }
-  return node_sees(children.first, point_m, known) || node_sees(children.second, point_m, known);
+  return node_sees(children.first, known) || node_sees(children.second, known);
+}
+
+/// Whether some position of a node sees the point, when triangles together hide all but pieces.
+std::optional<bool> PositionSearch::union_sees(std::int32_t at) {
+  Memory& memory = memory_[static_cast<std::size_t>(at)];
+  // What was not clear from a neighbouring point seldom is from this one.
+  if (memory.unclear > 0 && memory.unclear < kTryAgainAfter) {
+    ++memory.unclear;
+    return std::nullopt;
+  }
+  if (!union_.hides(point_m_, tree_->node(at).box, memory.together, open_)) {
+    memory.unclear = 1;
+    return std::nullopt;
+  }
+  casts_left_ = kMostCasts;
+  const bool seen = std::any_of(open_.begin(), open_.end(),
+                                [&](const SpacePiece& piece) { return sees_in_piece(at, piece); });
+  memory.unclear = seen || casts_left_ > 0 ? 0 : 1;
+  return memory.unclear == 0 ? std::optional(seen) : std::nullopt;
+}
+
+/// Whether some position of a node in a piece of space, or next to it, sees the point.
+bool PositionSearch::sees_in_piece(std::int32_t at, const SpacePiece& piece) {
+  const PositionTree::Node& node = tree_->node(at);
+  if (casts_left_ == 0 || !node.box.intersects(piece.box)) return false;
+  const Eigen::Vector3d middle = node.box.center() - point_m_;
+  const Eigen::Vector3d half_sides = 0.5 * node.box.sizes();
+  const double margin_m = kShadowMargin * (1.0 + middle.norm() + half_sides.norm());
+  for (std::size_t i = 0; i < piece.size; ++i) {
+    const auto& [normal, offset_m] = piece.half_spaces[i];
+    if (normal.dot(middle) + normal.cwiseAbs().dot(half_sides) < offset_m - margin_m) return false;
+  }
+  if (node.left >= 0) return sees_in_piece(node.left, piece) || sees_in_piece(node.right, piece);
+  for (std::int32_t i = node.begin; i < node.end && casts_left_ > 0; ++i) {
+    const Eigen::Vector3d sight = tree_->position_m(i) - point_m_;
+    const double off_m = kShadowMargin * (1.0 + sight.norm());
+    const bool inside = std::all_of(
+        piece.half_spaces.begin(), piece.half_spaces.begin() + piece.size,
+        [&](const HalfSpace& space) { return space.normal.dot(sight) >= space.offset_m - off_m; });
+    if (!inside) continue;
+    --casts_left_;
+    if (position_sees(i)) return true;
+  }
+  return false;
 }
 
 }  // namespace nextview

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "scoring/shadow_union.h"
 #include "scoring/surface_shadow.h"
 
 namespace nextview {
@@ -15,11 +16,41 @@ namespace nextview {
 std::optional<std::uint32_t> hidden_by(const Scene& scene, const Eigen::Vector3d& point_m,
                                        const Eigen::Vector3d& position_m);
 
+/// Positions as a tree of boxes, for any number of searches at once.
+class PositionTree {
+ public:
+  struct Node {
+    Eigen::AlignedBox3d box;
+    std::int32_t begin = 0;  ///< positions [begin, end)
+    std::int32_t end = 0;
+    std::int32_t middle = 0;  ///< the position nearest to the middle of the box
+    std::int32_t left = -1;   ///< -1 for a leaf
+    std::int32_t right = -1;
+
+    std::int32_t size() const { return end - begin; }
+  };
+
+  /// @throws std::invalid_argument when there are no positions
+  explicit PositionTree(std::vector<Eigen::Vector3d> positions);
+
+  const Node& node(std::int32_t i) const { return nodes_[static_cast<std::size_t>(i)]; }
+  std::int32_t root() const { return static_cast<std::int32_t>(nodes_.size()) - 1; }
+  const Eigen::Vector3d& position_m(std::int32_t i) const {
+    return positions_[static_cast<std::size_t>(i)];
+  }
+
+ private:
+  std::int32_t build(std::int32_t begin, std::int32_t end);
+
+  std::vector<Eigen::Vector3d> positions_;  ///< those of a node in a row
+  std::vector<Node> nodes_;                 ///< children before their parents
+};
+
 /// Answers exactly, and without looking at every position, whether a surface point can be seen from
-/// any of many positions.
+/// any of them.
 ///
-/// The positions are the leaves of a tree of boxes. A ray is cast to one position of a box. If a
-/// triangle is in the way, and the shadow of the surface around it (see SurfaceShadow) holds the
+/// A ray is cast to one position of a box. If a triangle is in the way, and the shadow of the
+/// surface around it (SurfaceShadow), or that of many triangles together (ShadowUnion), holds the
 /// whole box, all its positions are hidden:
 ///
 ///            point                  o  o  o    box: hidden
@@ -29,25 +60,23 @@ std::optional<std::uint32_t> hidden_by(const Scene& scene, const Eigen::Vector3d
 ///                    \   /            o  o    box: may be seen, so look at its halves
 ///
 /// Neighbouring points are mostly hidden by the same triangles and seen from the same positions, so
-/// those are tried first; this changes the time and never the answer.
-class PositionTree {
+/// those are tried first; this changes the time and never the answer. One search a thread.
+class PositionSearch {
  public:
   /// @param range_max_m positions farther away see nothing
-  /// The scene must outlive the tree.
-  /// @throws std::invalid_argument when there are no positions
-  PositionTree(const Scene& scene, const TriangleNeighbours& neighbours,
-               std::vector<Eigen::Vector3d> positions, double range_max_m);
+  /// Scene, neighbours and tree must outlive the search.
+  PositionSearch(const Scene& scene, const TriangleNeighbours& neighbours, const PositionTree& tree,
+                 double range_max_m);
 
-  /// Whether some position sees the point. Not const: it remembers what hid the last points.
+  /// Whether some position sees the point.
   bool sees(const Eigen::Vector3d& point_m);
 
  private:
-  struct Node {
-    Eigen::AlignedBox3d box;
-    std::int32_t representative = 0;  ///< the position nearest to the middle
-    std::int32_t left = -1;           ///< -1 for a leaf
-    std::int32_t right = -1;
-    std::optional<std::uint32_t> last_shadow;  ///< triangle that last hid the whole box
+  /// What hid all of a node from the last point for which something did.
+  struct Memory {
+    std::optional<std::uint32_t> surface;  ///< a triangle of it
+    std::vector<std::uint32_t> together;   ///< triangles of a union
+    std::uint8_t unclear = 0;  ///< points since a union was last tried and not clear, if it was not
   };
   /// What a ray to a position has met already, handed down so that it is cast once.
   struct Blocked {
@@ -55,16 +84,21 @@ class PositionTree {
     std::uint32_t triangle;
   };
 
-  std::int32_t build(std::int32_t* begin, std::int32_t* end);
-  bool node_sees(std::int32_t at, const Eigen::Vector3d& point_m, std::optional<Blocked> known);
+  bool position_sees(std::int32_t position);
+  bool node_sees(std::int32_t at, std::optional<Blocked> known);
+  std::optional<bool> union_sees(std::int32_t at);
+  bool sees_in_piece(std::int32_t at, const SpacePiece& piece);
 
   const Scene* scene_;
-  std::vector<Eigen::Vector3d> positions_;
+  const PositionTree* tree_;
   double range_max_m_;
-  SurfaceShadow shadow_;
-  std::vector<Node> nodes_;
-  std::int32_t root_;
+  SurfaceShadow surface_;
+  ShadowUnion union_;
+  std::vector<Memory> memory_;  ///< by node
   std::int32_t last_seen_from_ = 0;
+  std::vector<SpacePiece> open_;
+  int casts_left_ = 0;
+  Eigen::Vector3d point_m_ = Eigen::Vector3d::Zero();  ///< that is looked at
 };
 
 }  // namespace nextview

@@ -1,61 +1,149 @@
 #include "scoring/reachable_positions.h"
 
+#include <algorithm>
 #include <cmath>
-#include <cstdint>
+#include <optional>
 #include <stdexcept>
+#include <string>
+#include <tuple>
+#include <unordered_map>
 #include <unordered_set>
+
+#include "scoring/coverage_unknown.h"
 
 namespace nextview {
 namespace {
 
-/// A grid index as one number: 21 bits an axis, far more than any box at this spacing holds.
-std::uint64_t key_of(const Eigen::Vector3i& cell) {
+using Node = Eigen::Vector3i;
+
+/// A lattice index as one number: 21 bits an axis, far more than any box holds.
+std::uint64_t key_of(const Node& node) {
   constexpr int kOffset = 1 << 20;
   std::uint64_t key = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    key = key << 21 | static_cast<std::uint64_t>(cell[axis] + kOffset);
+  for (int axis = 2; axis >= 0; --axis) {
+    key = key << 21 | static_cast<std::uint64_t>(node[axis] + kOffset);
   }
   return key;
 }
 
-bool inside(const Eigen::Vector3d& point, const ReachParameters& parameters) {
-  return (point.array() >= parameters.box_min_m.array()).all() &&
-         (point.array() <= parameters.box_max_m.array()).all();
+/// Calls visit(node) for the nodes of a box, both corners included.
+template <class Visit>
+void for_each_node(const Node& min, const Node& max, const Visit& visit) {
+  for (int z = min.z(); z <= max.z(); ++z) {
+    for (int y = min.y(); y <= max.y(); ++y) {
+      for (int x = min.x(); x <= max.x(); ++x) visit(Node(x, y, z));
+    }
+  }
+}
+
+/// The lattice over a scene; asks for the clearance of each point once.
+class Lattice {
+ public:
+  Lattice(const Scene& scene, const ReachParameters& parameters)
+      : scene_(&scene), parameters_(&parameters) {}
+
+  Eigen::Vector3d position_m(const Node& node) const {
+    return parameters_->spacing_m * node.cast<double>();
+  }
+
+  bool is_free(const Node& node) { return clearance_m(node) >= parameters_->clearance_m; }
+
+  /// Whether the straight piece between two free neighbours keeps the clearance. No point of it is
+  /// farther from the nearer end than half its length, which most often is all that has to be
+  /// known.
+  bool joined(const Node& a, const Node& b) {
+    const Eigen::Vector3d a_m = position_m(a);
+    const Eigen::Vector3d b_m = position_m(b);
+    const double least_m = 0.5 * (clearance_m(a) + clearance_m(b) - (b_m - a_m).norm());
+    return least_m >= parameters_->clearance_m || clear(a_m, b_m);
+  }
+
+  bool clear(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m) const {
+    return scene_->clearance_m(a_m, b_m, parameters_->clearance_m) >= parameters_->clearance_m;
+  }
+
+ private:
+  /// Up to what joined() can use; negative outside the box.
+  double clearance_m(const Node& node) {
+    const auto [known, is_new] = clearance_m_.try_emplace(key_of(node), -1.0);
+    if (is_new) {
+      const Eigen::Vector3d at = position_m(node);
+      const bool inside = (at.array() >= parameters_->box_min_m.array()).all() &&
+                          (at.array() <= parameters_->box_max_m.array()).all();
+      const double enough_m = parameters_->clearance_m + parameters_->spacing_m * std::sqrt(3.0);
+      if (inside) known->second = scene_->clearance_m(at, at, enough_m);
+    }
+    return known->second;
+  }
+
+  const Scene* scene_;
+  const ReachParameters* parameters_;
+  std::unordered_map<std::uint64_t, double> clearance_m_;
+};
+
+void check(const Eigen::Vector3d& start_m, const ReachParameters& parameters) {
+  if (!(parameters.spacing_m > 0.0) || !std::isfinite(parameters.spacing_m) ||
+      !std::isfinite(parameters.clearance_m) || !std::isfinite(parameters.join_within_m) ||
+      !start_m.allFinite() || !parameters.box_min_m.allFinite() ||
+      !parameters.box_max_m.allFinite()) {
+    throw std::invalid_argument(
+        "reachable positions: spacing, clearance, start and box "
+        "must be finite, the spacing positive");
+  }
+}
+
+/// The nearest lattice point that the start gets to in a straight free piece.
+std::optional<Node> node_joined_by(const Eigen::Vector3d& start_m, Lattice& lattice,
+                                   const ReachParameters& parameters) {
+  const auto node_beside = [&](double offset_m) -> Node {
+    return ((start_m.array() + offset_m) / parameters.spacing_m).round().cast<int>();
+  };
+  std::vector<std::pair<double, Node>> candidates;
+  for_each_node(node_beside(-parameters.join_within_m), node_beside(parameters.join_within_m),
+                [&](const Node& node) {
+                  const double distance_m = (lattice.position_m(node) - start_m).norm();
+                  if (distance_m <= parameters.join_within_m && lattice.is_free(node)) {
+                    candidates.emplace_back(distance_m, node);
+                  }
+                });
+  std::stable_sort(candidates.begin(), candidates.end(),
+                   [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (const auto& [distance_m, node] : candidates) {
+    if (lattice.clear(start_m, lattice.position_m(node))) return node;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
 std::vector<Eigen::Vector3d> reachable_positions(const Scene& scene, const Eigen::Vector3d& start_m,
-                                                 const ReachParameters& parameters) {
-  if (!(parameters.spacing_m > 0.0) || !std::isfinite(parameters.spacing_m) ||
-      !std::isfinite(parameters.clearance_m) || !start_m.allFinite() ||
-      !parameters.box_min_m.allFinite() || !parameters.box_max_m.allFinite()) {
-    throw std::invalid_argument(
-        "reachable positions: spacing, clearance, start and box "
-        "must be finite, the spacing positive");
-  }
-  std::vector<Eigen::Vector3d> positions = {start_m};
-  std::vector<Eigen::Vector3i> cells = {Eigen::Vector3i::Zero()};
-  std::unordered_set<std::uint64_t> reached = {key_of(cells[0])};
-  // Breadth first; the two vectors grow behind the one being looked at.
-  for (std::size_t at = 0; at < positions.size(); ++at) {
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const int step : {-1, 1}) {
-        Eigen::Vector3i cell = cells[at];
-        cell[axis] += step;
-        if (reached.contains(key_of(cell))) continue;
-        const Eigen::Vector3d position = start_m + parameters.spacing_m * cell.cast<double>();
-        if (!inside(position, parameters)) continue;
-        const Eigen::Vector3d from = positions[at];
-        if (scene.clearance_m(from, position, parameters.clearance_m) < parameters.clearance_m) {
-          continue;
-        }
-        reached.insert(key_of(cell));
-        cells.push_back(cell);
-        positions.push_back(position);
-      }
+                                                 const ReachParameters& parameters,
+                                                 const std::stop_token& stop) {
+  check(start_m, parameters);
+  Lattice lattice(scene, parameters);
+  const std::optional<Node> first = node_joined_by(start_m, lattice, parameters);
+  if (!first) return {};
+  std::vector<Node> nodes = {*first};
+  std::unordered_set<std::uint64_t> reached = {key_of(*first)};
+  // Breadth first; the vector grows behind the one being looked at.
+  for (std::size_t at = 0; at < nodes.size() && !stop.stop_requested(); ++at) {
+    const Node from = nodes[at];
+    for_each_node(from - Node::Ones(), from + Node::Ones(), [&](const Node& to) {
+      if (reached.contains(key_of(to)) || !lattice.is_free(to) || !lattice.joined(from, to)) return;
+      reached.insert(key_of(to));
+      nodes.push_back(to);
+    });
+    if (static_cast<std::int64_t>(nodes.size()) > parameters.most_positions) {
+      throw CoverageUnknown("the free space holds more than " +
+                            std::to_string(parameters.most_positions) + " positions");
     }
   }
+  std::sort(nodes.begin(), nodes.end(), [](const Node& a, const Node& b) {
+    return std::tuple(a.z(), a.y(), a.x()) < std::tuple(b.z(), b.y(), b.x());
+  });
+  std::vector<Eigen::Vector3d> positions;
+  positions.reserve(nodes.size());
+  for (const Node& node : nodes) positions.push_back(lattice.position_m(node));
   return positions;
 }
 

@@ -3,16 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numeric>
 #include <tuple>
 
 namespace nextview {
 namespace {
-
-/// A shadow counts only this far (radians and metres) inside its border: more than the rounding of
-/// a ray cast in float, so that casting every ray would say the same.
-constexpr double kShadowMargin = 1e-5;
 
 /// A shadow that takes more triangles is cheaper shown in parts, for smaller boxes.
 constexpr std::size_t kMostTriangles = 200;
@@ -68,83 +63,6 @@ TriangleNeighbours::TriangleNeighbours(const TriangleMesh& mesh) : mesh_(&mesh) 
   run_start_.push_back(static_cast<std::uint32_t>(edges.size()));
 }
 
-/// What a point sees of a box: a pyramid of four sides around its directions, and what lies nearer.
-/// Coordinates are relative to the point.
-class SurfaceShadow::Pyramid {
- public:
-  Pyramid(const Eigen::Vector3d& point_m, const Eigen::AlignedBox3d& box)
-      : point_(point_m), center_(box.center() - point_m), half_sides_(0.5 * box.sizes()) {
-    const Eigen::Vector3d axis = center_.normalized();
-    const Eigen::Vector3d side = axis.unitOrthogonal();
-    frame_.col(0) = side;
-    frame_.col(1) = axis.cross(side);
-    frame_.col(2) = axis;
-    nearest_ = axis.dot(center_) - axis.cwiseAbs().dot(half_sides_);
-    farthest_ = center_.norm() + half_sides_.norm();
-    if (nearest_ <= kLineOfSightGap_m) return;
-    for (int corner = 0; corner < 8; ++corner) {
-      const Eigen::Vector3d signs((corner & 1) != 0 ? 1.0 : -1.0, (corner & 2) != 0 ? 1.0 : -1.0,
-                                  (corner & 4) != 0 ? 1.0 : -1.0);
-      const Eigen::Vector3d seen = frame_.transpose() * (center_ + signs.cwiseProduct(half_sides_));
-      const Eigen::Array2d slope = seen.head<2>().array() / seen.z();
-      least_ = least_.min(slope - kShadowMargin);
-      most_ = most_.max(slope + kShadowMargin);
-    }
-  }
-
-  /// Whether the whole box lies before the point, so that the rest has a meaning.
-  bool exists() const { return nearest_ > kLineOfSightGap_m; }
-
-  struct Corner {
-    Eigen::Vector3d at;
-    double depth;
-    unsigned outside;  ///< a bit for each side of the pyramid
-  };
-  Corner corner(const Eigen::Vector3f& vertex_m) const {
-    const Eigen::Vector3d at = vertex_m.cast<double>() - point_;
-    const Eigen::Vector3d seen = frame_.transpose() * at;
-    const unsigned outside = (seen.x() < least_.x() * seen.z() - kShadowMargin ? 1U : 0U) |
-                             (seen.x() > most_.x() * seen.z() + kShadowMargin ? 2U : 0U) |
-                             (seen.y() < least_.y() * seen.z() - kShadowMargin ? 4U : 0U) |
-                             (seen.y() > most_.y() * seen.z() + kShadowMargin ? 8U : 0U);
-    return {at, seen.z(), outside};
-  }
-
-  /// Whether all rays to the box that meet the triangle do so after they started and before they
-  /// arrive.
-  bool is_behind(const std::array<Corner, 3>& corners) const {
-    const auto [low, high] = std::minmax({corners[0].depth, corners[1].depth, corners[2].depth});
-    const bool after_start = low > kLineOfSightGap_m + kShadowMargin;
-    const bool before_end = high < nearest_ - kShadowMargin;
-    if (after_start && before_end) return true;
-    Eigen::Vector3d normal =
-        (corners[1].at - corners[0].at).cross(corners[2].at - corners[0].at).normalized();
-    if (normal.dot(corners[0].at) < 0.0) normal = -normal;
-    const double plane = normal.dot(corners[0].at);
-    return (after_start || plane > kLineOfSightGap_m + kShadowMargin) &&
-           (before_end ||
-            normal.dot(center_) - normal.cwiseAbs().dot(half_sides_) > plane + kShadowMargin);
-  }
-
-  /// Whether a plane through the point leaves the whole box on one side.
-  bool is_beside(const Eigen::Vector3d& normal) const {
-    return std::abs(normal.dot(center_)) - normal.cwiseAbs().dot(half_sides_) >
-           kShadowMargin * farthest_ * normal.norm();
-  }
-
-  const Eigen::Vector3d& point() const { return point_; }
-
- private:
-  Eigen::Vector3d point_;
-  Eigen::Vector3d center_;
-  Eigen::Vector3d half_sides_;
-  Eigen::Matrix3d frame_;  ///< the third axis points to the middle of the box
-  double nearest_ = 0.0;   ///< along the third axis
-  double farthest_ = 0.0;
-  Eigen::Array2d least_ = Eigen::Array2d::Constant(std::numeric_limits<double>::infinity());
-  Eigen::Array2d most_ = -least_;  ///< sideways over depth
-};
-
 SurfaceShadow::SurfaceShadow(const TriangleNeighbours& neighbours)
     : neighbours_(&neighbours), grown_in_(neighbours.mesh().triangles.size(), 0) {}
 
@@ -164,7 +82,7 @@ bool SurfaceShadow::covers(std::uint32_t triangle, const Eigen::Vector3d& point_
 bool SurfaceShadow::hides(std::uint32_t triangle, const Eigen::Vector3d& point_m,
                           const Eigen::Vector3d& target_m, const Eigen::AlignedBox3d& box) {
   if (!covers(triangle, point_m, target_m)) return false;
-  const Pyramid pyramid(point_m, box);
+  const BoxPyramid pyramid(point_m, box);
   if (!pyramid.exists()) return false;
   ++call_;
   grown_.assign(1, triangle);
@@ -176,16 +94,13 @@ bool SurfaceShadow::hides(std::uint32_t triangle, const Eigen::Vector3d& point_m
 }
 
 /// Adds what the pyramid meets next to a triangle; false where it meets a border of the shadow.
-bool SurfaceShadow::grow_over(std::uint32_t triangle, const Pyramid& pyramid) {
+bool SurfaceShadow::grow_over(std::uint32_t triangle, const BoxPyramid& pyramid) {
   const TriangleMesh& mesh = neighbours_->mesh();
-  const auto& vertices = mesh.triangles[triangle];
-  const std::array<Pyramid::Corner, 3> corners = {pyramid.corner(mesh.vertices_m[vertices[0]]),
-                                                  pyramid.corner(mesh.vertices_m[vertices[1]]),
-                                                  pyramid.corner(mesh.vertices_m[vertices[2]])};
+  const auto corners = pyramid.corners(mesh, triangle);
   if (!pyramid.is_behind(corners)) return false;
   for (std::size_t edge = 0; edge < 3; ++edge) {
-    const Pyramid::Corner& from = corners[edge];
-    const Pyramid::Corner& to = corners[(edge + 1) % 3];
+    const BoxPyramid::Corner& from = corners[edge];
+    const BoxPyramid::Corner& to = corners[(edge + 1) % 3];
     if ((from.outside & to.outside) != 0) continue;
     const Eigen::Vector3d normal = from.at.cross(to.at);
     if (pyramid.is_beside(normal)) continue;

@@ -6,11 +6,9 @@
 #include <vector>
 
 #include "scene/triangle_mesh.h"
+#include "scoring/box_pyramid.h"
 
 namespace nextview {
-
-/// Rays to a surface point start this far off it, so that the surface does not hide its own points.
-constexpr double kLineOfSightGap_m = 0.001;
 
 /// Which triangles touch along which edges. Corners are the same where their coordinates are,
 /// whatever their numbers; an edge may have any number of triangles.
@@ -75,8 +73,7 @@ class SurfaceShadow {
              const Eigen::Vector3d& target_m, const Eigen::AlignedBox3d& box);
 
  private:
-  class Pyramid;
-  bool grow_over(std::uint32_t triangle, const Pyramid& pyramid);
+  bool grow_over(std::uint32_t triangle, const BoxPyramid& pyramid);
 
   const TriangleNeighbours* neighbours_;
   std::vector<std::uint32_t> grown_in_;  ///< by triangle: the last call that reached it

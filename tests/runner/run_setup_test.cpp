@@ -76,7 +76,7 @@ TEST(RunSetup, LeavesUnitAndAxisToTheFileUnlessTheyAreGiven) {
 
 TEST(RunSetup, ScoresWhereTheRobotMayBe) {
   const run_config_t config = prepare_run(boxes()).config;
-  const ReachParameters reach = reach_of(config);
+  const ReachParameters reach = visibility_of(config).reach;
   EXPECT_EQ(reach.clearance_m, config.planner.clearance_m);
   EXPECT_EQ(reach.box_min_m.z(), config.base.lift_min_m);
   EXPECT_EQ(reach.box_max_m.z(), config.base.lift_max_m);

@@ -6,6 +6,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "scoring/coverage_unknown.h"
 #include "tests/scoring/room_mesh.h"
 
 namespace nextview {
@@ -18,33 +19,53 @@ ReachParameters whole_room(const Eigen::Vector3d& size) {
 }
 
 TEST(ReachablePositions, FillAnEmptyRoomUpToTheClearance) {
-  const Eigen::Vector3d size(3.0, 2.0, 2.0);
+  const Eigen::Vector3d size(3.01, 2.01, 2.01);
   const Scene scene(room(size));
   const auto positions = reachable_positions(scene, {1.5, 1.0, 1.0}, whole_room(size));
-  // From 1.5 by 0.25 within [0.4, 2.6]: 0.5 .. 2.5, nine of them; from 1.0 within [0.4, 1.6]:
-  // 0.5 .. 1.5, five of them.
-  EXPECT_EQ(positions.size(), 9u * 5u * 5u);
-  EXPECT_EQ(positions[0], Eigen::Vector3d(1.5, 1.0, 1.0));
+  // Multiples of 0.1 within [0.4, 2.61]: 0.5 .. 2.6 and, rounding permitting, 0.4, which lies
+  // exactly at the clearance; likewise within [0.4, 1.61].
+  EXPECT_GE(positions.size(), 22u * 12u * 12u);
+  EXPECT_LE(positions.size(), 23u * 13u * 13u);
+}
+
+TEST(ReachablePositions, LieOnALatticeThatKnowsNoStart) {
+  const Eigen::Vector3d size(3.03, 2.03, 2.03);
+  const Scene scene(room(size));
+  ReachParameters reach = whole_room(size);
+  reach.clearance_m = 0.45;
+  // 0.5 .. 2.5 within [0.45, 2.58], and 0.5 .. 1.5 within [0.45, 1.58].
+  const auto first = reachable_positions(scene, {1.5, 1.0, 1.0}, reach);
+  EXPECT_EQ(first.size(), 21u * 11u * 11u);
+  EXPECT_TRUE(first[0].isApprox(Eigen::Vector3d(0.5, 0.5, 0.5)));
+  for (const Eigen::Vector3d& start_m :
+       {Eigen::Vector3d(1.55, 1.04, 0.93), Eigen::Vector3d(0.46, 0.46, 0.46),
+        Eigen::Vector3d(2.57, 1.57, 1.57)}) {
+    EXPECT_EQ(reachable_positions(scene, start_m, reach), first) << start_m.transpose();
+  }
 }
 
 TEST(ReachablePositions, KeepToTheBox) {
-  const Eigen::Vector3d size(3.0, 2.0, 2.0);
+  const Eigen::Vector3d size(3.03, 2.03, 2.03);
   const Scene scene(room(size));
   ReachParameters reach = whole_room(size);
-  reach.box_min_m.z() = 0.8;  // lift limits: 1.0 and 1.25 are left of five heights
-  reach.box_max_m.z() = 1.3;
-  EXPECT_EQ(reachable_positions(scene, {1.5, 1.0, 1.0}, reach).size(), 9u * 5u * 2u);
+  reach.clearance_m = 0.45;
+  reach.box_min_m.z() = 0.85;  // lift limits: 0.9, 1.0, 1.1 and 1.2
+  reach.box_max_m.z() = 1.25;
+  EXPECT_EQ(reachable_positions(scene, {1.5, 1.0, 1.0}, reach).size(), 21u * 11u * 4u);
 }
 
 TEST(ReachablePositions, DoNotPassThroughAThinWall) {
-  const Eigen::Vector3d size(6.0, 2.0, 2.0);
+  const Eigen::Vector3d size(6.03, 2.03, 2.03);
   TriangleMesh mesh = room(size);
-  // A wall at x = 3.1 from wall to wall, so thin that no grid position is in it.
-  add_box(mesh, {3.10, 0.0, 0.0}, {3.11, 2.0, 2.0});
+  add_box(mesh, {3.03, 0.0, 0.0}, {3.04, 2.03, 2.03});
   const Scene scene(mesh);
-  const auto positions = reachable_positions(scene, {1.5, 1.0, 1.0}, whole_room(size));
-  // 0.5 .. 2.5 is 0.6 m from the wall, the next one, 2.75, only 0.35 m.
-  EXPECT_EQ(positions.size(), 9u * 5u * 5u);
+  ReachParameters reach = whole_room(size);
+  reach.clearance_m = 0.02;  // so that 3.0 and 3.1, beside the wall, are free
+  const auto positions = reachable_positions(scene, {1.5, 1.0, 1.0}, reach);
+  EXPECT_TRUE(std::all_of(positions.begin(), positions.end(),
+                          [](const auto& position) { return position.x() < 3.03; }));
+  EXPECT_TRUE(std::any_of(positions.begin(), positions.end(),
+                          [](const auto& position) { return position.x() > 2.95; }));
 }
 
 TEST(ReachablePositions, GoRoundAWallThatLeavesAWay) {
@@ -57,10 +78,18 @@ TEST(ReachablePositions, GoRoundAWallThatLeavesAWay) {
                           [](const auto& p) { return p.x() > 4.0 && p.y() < 1.0; }));
 }
 
-TEST(ReachablePositions, AreTheStartAloneWhereNothingElseIsFree) {
-  const Eigen::Vector3d size(1.0, 1.0, 1.0);
+TEST(ReachablePositions, AreNoneWhereTheStartJoinsNothing) {
+  const Eigen::Vector3d size(1.0, 1.0, 0.7);
   const Scene scene(room(size));
-  EXPECT_EQ(reachable_positions(scene, {0.5, 0.5, 0.5}, whole_room(size)).size(), 1u);
+  EXPECT_TRUE(reachable_positions(scene, {0.5, 0.5, 0.35}, whole_room(size)).empty());
+}
+
+TEST(ReachablePositions, RefuseToBeMoreThanTheyMay) {
+  const Eigen::Vector3d size(3.0, 2.0, 2.0);
+  const Scene scene(room(size));
+  ReachParameters reach = whole_room(size);
+  reach.most_positions = 1000;
+  EXPECT_THROW(reachable_positions(scene, {1.5, 1.0, 1.0}, reach), CoverageUnknown);
 }
 
 TEST(ReachablePositions, RefuseNumbersThatCannotBe) {
