@@ -87,11 +87,11 @@ void check_planner(Checks& checks, const planner_config_t& planner) {
   checks.neutral("prediction_rows", planner.prediction_rows);
   checks.neutral("structure_weight", planner.structure_weight);
   checks.neutral("navigation_weight", planner.navigation_weight);
-  checks.neutral("path_cost_per_m", planner.path_cost_per_m);
-  checks.neutral("later_departure_m", planner.later_departure_m);
-  checks.neutral("least_overlap", planner.least_overlap);
-  checks.neutral("least_gain_m2", planner.least_gain_m2);
-  checks.neutral("return_home", planner.return_home);
+  checks.within(bounds::kPathCost, planner.path_cost_per_m);
+  checks.within(bounds::kDeparture, planner.later_departure_m);
+  checks.within(bounds::kLeastOverlap, planner.least_overlap);
+  checks.within(bounds::kLeastGain, planner.least_gain_m2);
+  checks.within("return_home", planner.return_home, 0, 1);
   checks.within(bounds::kQualityThreshold, planner.quality_threshold);
   checks.within(bounds::kClearance, planner.clearance_m);
   checks.within(bounds::kDeparture, planner.departure_m);
@@ -118,7 +118,8 @@ std::string check(const run_config_t& config) {
   check_base(checks, config.base);
   check_map(checks, config.map);
   check_planner(checks, config.planner);
-  checks.require(config.strategy == "paper", "strategy '" + config.strategy + "' is not paper");
+  checks.require(config.strategy == "paper" || config.strategy == "surface",
+                 "strategy '" + config.strategy + "' is neither paper nor surface");
   return checks.reason();
 }
 

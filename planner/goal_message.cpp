@@ -1,8 +1,5 @@
 #include "planner/goal_message.h"
 
-#include <cmath>
-#include <string>
-
 namespace nextview {
 namespace {
 
@@ -18,17 +15,7 @@ goal_t goal_at(const SensorPose& pose, std::span<const Eigen::Vector3d> waypoint
   for (std::size_t i = 1; i < waypoints_m.size(); ++i) {
     goal.path_length_m += (waypoints_m[i] - waypoints_m[i - 1]).norm();
   }
-  goal.strategy = "paper";
   return goal;
-}
-
-std::string reason_of(const Decision& decision) {
-  const auto percent = [](double share) { return std::to_string(std::lround(100.0 * share)); };
-  const Fitness& fitness = decision.fitness;
-  return "the best of " + std::to_string(decision.evaluations) +
-         " positions tried: of what its rays meet " + percent(fitness.share_occupied) +
-         " % is Occupied, " + percent(fitness.share_occlusion_plane) +
-         " % an occlusion plane and " + percent(fitness.share_unseen) + " % unseen";
 }
 
 }  // namespace
@@ -43,7 +30,10 @@ goal_t goal_message(const Decision& decision) {
   goal.factors = 1;
   goal.factor_value = {decision.fitness.factors[kQualityFactor]};
   goal.factor_names = "quality";
-  goal.reason = reason_of(decision);
+  goal.strategy = decision.strategy;
+  goal.reason = decision.reason;
+  goal.expected_gain_m2 = decision.expected_gain_m2;
+  goal.overlap = decision.overlap;
   goal.iterations = decision.iterations;
   goal.evaluations = decision.evaluations;
   return goal;
@@ -63,8 +53,9 @@ search_t search_message(const Decision& decision) {
   return search;
 }
 
-goal_t start_goal_message(const SensorPose& start) {
+goal_t start_goal_message(const SensorPose& start, const std::string& strategy) {
   goal_t goal = goal_at(start, std::span(&start.position_m, 1));
+  goal.strategy = strategy;
   goal.reason = "the scan at the start";
   return goal;
 }

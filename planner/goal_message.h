@@ -1,5 +1,7 @@
 #pragma once
 
+#include <string>
+
 #include "lcmtypes/channels.h"
 #include "planner/decision.h"
 
@@ -11,6 +13,6 @@ goal_t goal_message(const Decision& decision);
 search_t search_message(const Decision& decision);
 
 /// The goal of view 1: the start pose, where the sensor is already.
-goal_t start_goal_message(const SensorPose& start);
+goal_t start_goal_message(const SensorPose& start, const std::string& strategy);
 
 }  // namespace nextview

@@ -44,6 +44,15 @@ std::array<Eigen::Vector3d, 4> initial_vertices(const Eigen::Vector3d& present_m
   return vertices;
 }
 
+std::string reason_of(const Decision& decision) {
+  const auto percent = [](double share) { return std::to_string(std::lround(100.0 * share)); };
+  const Fitness& fitness = decision.fitness;
+  return "the best of " + std::to_string(decision.evaluations) +
+         " positions tried: of what its rays meet " + percent(fitness.share_occupied) +
+         " % is Occupied, " + percent(fitness.share_occlusion_plane) +
+         " % an occlusion plane and " + percent(fitness.share_unseen) + " % unseen";
+}
+
 /// Where the search has led, which has found a feasible position.
 Decision decision_of(const SimplexResult& search, const ViewEvaluator& evaluator,
                      const SensorPose& present) {
@@ -66,6 +75,8 @@ Decision decision_of(const SimplexResult& search, const ViewEvaluator& evaluator
     }
     decision.tried.push_back(tried);
   }
+  decision.strategy = PaperStrategy::kName;
+  decision.reason = reason_of(decision);
   return decision;
 }
 

@@ -38,6 +38,8 @@ std::optional<Decision> decide_by_simplex(const Situation& situation, ViewPredic
 /// The paper's method, section 5: the simplex, and the rules that end a run (P23).
 class PaperStrategy : public Strategy {
  public:
+  static constexpr const char* kName = "paper";
+
   /// @param voxel_size_m of the map, for areas
   /// @throws std::invalid_argument for parameters that cannot be
   PaperStrategy(const PlannerParameters& search, const StopParameters& stop, double voxel_size_m,

@@ -38,7 +38,7 @@ bool PlannerProcess::step() {
   if (view_ == 0) {
     view_ = 1;
     attempt_ = 1;
-    publish_goal(start_goal_message(start_pose_of(config_)));
+    publish_goal(start_goal_message(start_pose_of(config_), config_.strategy));
     return true;
   }
   if (!folded_) {

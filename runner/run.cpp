@@ -162,9 +162,9 @@ void Run::start_scoring() {
                            promise = std::move(promise)](const std::stop_token& stop) mutable {
     give_way();
     try {
-      promise.set_value(kept_visible_surface(
-          cache, *scene, std::string(config.scene_digest), start_pose_of(config).position_m,
-          visibility_of(config), stop, progress.get()));
+      promise.set_value(kept_visible_surface(cache, *scene, std::string(config.scene_digest),
+                                             start_pose_of(config).position_m,
+                                             visibility_of(config), stop, progress.get()));
     } catch (...) {
       promise.set_exception(std::current_exception());
     }

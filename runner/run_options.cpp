@@ -82,7 +82,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
       ->capture_default_str()
       ->group(group);
   app.add_option("--views", options.views,
-                 "End after this many views; default 60, with --quality 300")
+                 "End after this many views; default 60, with --quality 300, for surface 1000")
       ->check(number_within(bounds::kMaxViews))
       ->group(group);
   app.add_flag("--quality", options.quality,
@@ -193,6 +193,31 @@ void add_map_options(CLI::App& app, RunOptions& options) {
 
 void add_planner_options(CLI::App& app, RunOptions& options) {
   const std::string group = "Planner";
+  app.add_option(
+         "--strategy", options.strategy,
+         "How views are chosen: paper, a hill climb from where the sensor is; or surface, by "
+         "the new surface to be seen from anywhere it can get to, until nothing is left")
+      ->check(CLI::IsMember({PaperStrategy::kName, SurfaceStrategy::kName}))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--path-cost", options.path_cost_per_m,
+                 "surface: trades views against metres; a way of d metres makes a view worth "
+                 "exp(-COST d) of what it shows, 0: fewest views")
+      ->check(number_within(bounds::kPathCost))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--least-overlap", options.least_overlap,
+                 "surface: share of a view that must be known already, for registration")
+      ->check(number_within(bounds::kLeastOverlap))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--least-gain", options.least_gain_m2,
+                 "surface: the run ends when no view is expected to show more new surface, m2")
+      ->check(number_within(bounds::kLeastGain))
+      ->capture_default_str()
+      ->group(group);
+  app.add_flag("--return", options.return_home, "surface: come home when nothing is left")
+      ->group(group);
   app.add_option("--clearance", options.clearance_m,
                  "Nothing known may be nearer to the sensor and its path, m (paper: 4 voxels)")
       ->check(number_within(bounds::kClearance))
@@ -203,10 +228,16 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
       ->check(number_within(bounds::kDeparture))
       ->capture_default_str()
       ->group(group);
-  app.add_option("--directions", options.directions,
-                 "Orientations tried at every position: 20, 80, 320 or 1280")
-      ->check(CLI::IsMember({20, 80, 320, 1280}))
+  app.add_option("--later-departure", options.later_departure_m,
+                 "surface: likewise after the first move, m")
+      ->check(number_within(bounds::kDeparture))
       ->capture_default_str()
+      ->group(group);
+  app.add_option(
+         "--directions", options.directions,
+         "Orientations tried at every position: 20, 80, 320 or 1280; default 20, for surface "
+         "320")
+      ->check(CLI::IsMember({20, 80, 320, 1280}))
       ->group(group);
   app.add_option("--threads", options.threads,
                  "Threads the planner may use; the result does not depend on it")

@@ -7,6 +7,7 @@
 
 #include "base_sim/base.h"
 #include "planner/paper_strategy.h"
+#include "planner/surface_strategy.h"
 #include "planner/termination.h"
 #include "sensor/sensor_geometry.h"
 
@@ -27,7 +28,7 @@ struct RunOptions {
   double start_tilt_deg = 0.0;
 
   std::int64_t seed = 1;
-  std::optional<int> views;  ///< 60, with quality 300
+  std::optional<int> views;  ///< default: the paper's 60, with quality 300; 1000 for ours
   bool quality = false;
   std::string out;  ///< folder of the run; empty: a new one in runs_folder
   std::string runs_folder = "runs";
@@ -50,8 +51,14 @@ struct RunOptions {
   int margin_voxels = 1;
 
   double clearance_m = FeasibilityParameters{}.clearance_m;
+  std::string strategy = PaperStrategy::kName;
   double departure_m = FeasibilityParameters{}.departure_m;
-  int directions = 20;
+  double later_departure_m = SurfaceParameters{}.departure_m;
+  double path_cost_per_m = SurfaceParameters{}.path_cost_per_m;
+  double least_overlap = SurfaceParameters{}.min_overlap;
+  double least_gain_m2 = SurfaceParameters{}.least_new_area_m2;
+  bool return_home = false;
+  std::optional<int> directions;  ///< 20 for the paper's strategy, 320 for ours
   int threads = 1;
   double step_min_m = PlannerParameters{}.step_min_m;
   double step_max_m = PlannerParameters{}.step_max_m;

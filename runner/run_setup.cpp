@@ -138,14 +138,21 @@ void fill_planner(run_config_t& config, const RunOptions& options) {
   if (options.step_min_m > options.step_max_m) {
     throw SetupError("--step-min must not be above --step-max");
   }
-  config.planner.max_views = options.views.value_or(options.quality ? 300 : 60);
+  const bool paper = options.strategy == PaperStrategy::kName;
+  const int views = !paper ? 1000 : options.quality ? 300 : 60;
+  config.planner.max_views = options.views.value_or(views);
   config.planner.max_attempts = options.max_attempts;
   config.planner.quality_weight = options.quality ? 1.0 : 0.0;
   config.planner.stop_rule = options.quality ? 2 : 1;
   config.planner.quality_threshold = options.quality_threshold;
   config.planner.clearance_m = options.clearance_m;
   config.planner.departure_m = options.departure_m;
-  config.planner.directions = options.directions;
+  config.planner.later_departure_m = std::min(options.later_departure_m, options.departure_m);
+  config.planner.path_cost_per_m = options.path_cost_per_m;
+  config.planner.least_overlap = options.least_overlap;
+  config.planner.least_gain_m2 = options.least_gain_m2;
+  config.planner.return_home = options.return_home;
+  config.planner.directions = options.directions.value_or(paper ? 20 : 320);
   config.planner.threads = options.threads;
   config.planner.step_min_m = options.step_min_m;
   config.planner.step_max_m = options.step_max_m;
@@ -179,7 +186,7 @@ void fill_rest(run_config_t& config, const RunOptions& options, const SceneDescr
   config.seed = options.seed;
   config.scene_name = description.name;
   config.program_version = program_version();
-  config.strategy = "paper";
+  config.strategy = options.strategy;
   fill_start(config, options, description, bounds);
   fill_sensor(config, options);
   fill_base(config, options, bounds);
