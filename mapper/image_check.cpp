@@ -1,5 +1,6 @@
 #include "mapper/image_check.h"
 
+#include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
 #include <string>

@@ -21,6 +21,7 @@ TEST(SensorSimProcess, ScansAnOldViewAgainWhenItIsAskedForIt) {
   Bus sensor_bus(network.connect(), 7, "sensor_sim");
   Bus base_bus(network.connect(), 7, "base_sim");
   SensorSimProcess sensor(sensor_bus, config);
+  sensor_bus.on_missing([&](const request_t& request) { sensor.on_missing(request); });
   const auto settle = [&] {
     while (sensor_bus.handle(milliseconds(0)) || base_bus.handle(milliseconds(0)) ||
            sensor.step()) {
