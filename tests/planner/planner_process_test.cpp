@@ -8,6 +8,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <tuple>
 
 #include "mapper/mapper_config.h"
 #include "mapper/mapper_process.h"
@@ -34,6 +35,12 @@ class PlannerOnTheBus : public testing::Test {
   PlannerOnTheBus() {
     base_bus_.on<goal_t>([this](const goal_t& goal) { arrive(goal); });
     watcher_.on<goal_t>([this](const goal_t& goal) { goals_[{goal.view, goal.attempt}] = goal; });
+    watcher_.on<timing_t>([this](const timing_t& timing) {
+      const auto names = names_of(timing.duration_names);
+      for (std::size_t i = 0; i < names.size(); ++i) {
+        durations_s_[{timing.view, timing.attempt, std::string(names[i])}] = timing.duration_s[i];
+      }
+    });
     watcher_.on<stop_t>([this](const stop_t& stop) { stop_ = stop; });
     watcher_.on<commit_t>([this](const commit_t& commit) { commits_[commit.view] = commit; });
     watcher_.on<range_image_t>([this](const range_image_t& part) {
@@ -86,6 +93,7 @@ class PlannerOnTheBus : public testing::Test {
   std::set<Attempt> refused_;
   std::map<Attempt, goal_t> goals_;
   std::map<int, commit_t> commits_;
+  std::map<std::tuple<int, int, std::string>, double> durations_s_;  // by view, attempt and name
   std::map<int, ReceivedRangeImage> images_;
   std::optional<stop_t> stop_;
 };
@@ -128,6 +136,20 @@ TEST_F(PlannerOnTheBus, PublishesAGoalOnlyOnceTheCommitHasCome) {
                 planner_.step());
   }
   EXPECT_TRUE(commits_.contains(1));
+}
+
+TEST_F(PlannerOnTheBus, SaysHowLongItDecidedFoldedAndWaited) {
+  refused_ = {{3, 1}};
+  run();
+  for (int view = 2; view <= 6; ++view) {
+    EXPECT_GT((durations_s_[{view, 1, "plan"}]), 0.0) << view;
+    EXPECT_GT((durations_s_[{view, 1, "fold_before"}]), 0.0) << view;
+    EXPECT_GT((durations_s_[{view, view == 3 ? 2 : 1, "update"}]), 0.0)
+        << "the mapper, view " << view;
+  }
+  EXPECT_GT((durations_s_[{3, 2, "plan"}]), 0.0) << "after the refusal";
+  EXPECT_GT((durations_s_[{7, 0, "fold_before"}]), 0.0) << "of the last view";
+  EXPECT_FALSE(durations_s_.contains({7, 0, "plan"}));
 }
 
 TEST_F(PlannerOnTheBus, StopsWithoutAnotherGoalWhenTheMapperHasAnotherMap) {
