@@ -1,6 +1,5 @@
 #include "mapper/image_check.h"
 
-#include <Eigen/LU>
 #include <cmath>
 #include <stdexcept>
 #include <string>

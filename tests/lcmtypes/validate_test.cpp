@@ -174,8 +174,8 @@ TEST(Validate, RangesWhereverTheyStand) {
 TEST(Validate, SinesAndRotationsOf32BitFloats) {
   auto image = example<range_image_t>();
   const float angle = 0.7F;
-  image.column_sin[1] = static_cast<double>(std::sin(angle));
-  image.column_cos[1] = static_cast<double>(std::cos(angle));
+  image.entry_sin[1] = static_cast<double>(std::sin(angle));
+  image.entry_cos[1] = static_cast<double>(std::cos(angle));
   const double turned[3][3] = {
       {static_cast<double>(std::cos(angle)), static_cast<double>(-std::sin(angle)), 0.0},
       {static_cast<double>(std::sin(angle)), static_cast<double>(std::cos(angle)), 0.0},
@@ -305,11 +305,11 @@ TEST(Validate, RunConfig) {
       {"rows to predict with", [](run_config_t& m) { m.planner.prediction_rows = 32; }},
       {"structure", [](run_config_t& m) { m.planner.structure_weight = 1.0; }},
       {"navigation", [](run_config_t& m) { m.planner.navigation_weight = 1.0; }},
-      {"a path cost", [](run_config_t& m) { m.planner.path_cost_per_m = 0.1; }},
-      {"a later departure", [](run_config_t& m) { m.planner.later_departure_m = 0.3; }},
-      {"an overlap", [](run_config_t& m) { m.planner.least_overlap = 0.2; }},
+      {"a negative path cost", [](run_config_t& m) { m.planner.path_cost_per_m = -0.1; }},
+      {"a later departure of 6 m", [](run_config_t& m) { m.planner.later_departure_m = 6.0; }},
+      {"an overlap above 1", [](run_config_t& m) { m.planner.least_overlap = 1.2; }},
       {"a gain", [](run_config_t& m) { m.planner.least_gain_m2 = kNan; }},
-      {"the way home", [](run_config_t& m) { m.planner.return_home = 1; }},
+      {"the way home", [](run_config_t& m) { m.planner.return_home = 2; }},
       {"no strategy", [](run_config_t& m) { m.strategy.clear(); }},
       {"a strategy nobody has", [](run_config_t& m) { m.strategy = "guess"; }},
       {"up is down", [](run_config_t& m) { m.scene_up = "down"; }},

@@ -8,6 +8,8 @@
 #include <random>
 #include <vector>
 
+#include "planner/segment_walk.h"
+
 namespace nextview {
 namespace {
 
