@@ -89,7 +89,8 @@ int run(const nextview::RunOptions& options, nextview::Run::Clock::time_point st
 int main(int argc, char** argv) {
   const auto start = nextview::Run::Clock::now();
   int exit_status = 0;
-  const auto options = nextview::parse_run_options(argc, argv, exit_status);
+  const auto options =
+      nextview::parse_run_options(argc, argv, exit_status, nextview::kRunDescription);
   if (!options) return exit_status;
   std::signal(SIGPIPE, SIG_IGN);
   try {

@@ -108,6 +108,11 @@ void add_run_options(CLI::App& app, RunOptions& options) {
                  "building; default: NEXTVIEW_CACHE, else XDG_CACHE_HOME/nextview, else "
                  "~/.cache/nextview")
       ->group(group);
+  app.add_option("--bound-spacing", options.bound_spacing_m,
+                 "Spacing of the positions that nextview_bound looks at, m")
+      ->check(number_in(0.05, 100.0))
+      ->capture_default_str()
+      ->group(group);
   app.add_flag("--no-coverage", options.no_coverage, "Do not work out surface_coverage")
       ->group(group);
   app.add_flag("--verbose", options.verbose, "Say more: port, processes, counters, timings")
@@ -287,15 +292,17 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
 
 }  // namespace
 
-std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_status) {
+const char* const kRunDescription =
+    "Recovers a scene by itself: scans it from the start, then again and again from the next\n"
+    "best view, until there is nothing left to see. Starts sensor_sim, base_sim, mapper, planner\n"
+    "and lcm-logger on a bus of their own, watches them, scores what they do against the CAD\n"
+    "model, and leaves run.lcmlog, views.csv and summary.json.\n";
+
+std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_status,
+                                            const std::string& description) {
   RunOptions options;
   options.scenes_folder = NEXTVIEW_SCENES_FOLDER;
-  CLI::App app{
-      "Recovers a scene by itself: scans it from the start, then again and again from the next\n"
-      "best view, until there is nothing left to see. Starts sensor_sim, base_sim, mapper, "
-      "planner\n"
-      "and lcm-logger on a bus of their own, watches them, scores what they do against the CAD\n"
-      "model, and leaves run.lcmlog, views.csv and summary.json.\n"};
+  CLI::App app{description};
   app.footer(
       "Examples:\n"
       "  ./run                                  the paper's first room, 60 views\n"

@@ -71,14 +71,19 @@ struct RunOptions {
 
   std::string lcm_url;  ///< empty: LCM_DEFAULT_URL, else a free port of its own
   double patience_s = 60.0;
-  std::string cache;         ///< where results that take long are kept; empty: see cache_folder
-  bool no_coverage = false;  ///< surface_coverage is not worked out
+  std::string cache;  ///< where results that take long are kept; empty: see cache_folder
+  double bound_spacing_m = 0.40;  ///< of the positions nextview_bound looks at
+  bool no_coverage = false;       ///< surface_coverage is not worked out
   bool verbose = false;
 };
 
 /// Reads the command line.
 /// @return the options; or, when the program has nothing more to do (--help, or a line that cannot
 ///         be right, which has been printed), its exit status in `exit_status`
-std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_status);
+/// @param description what --help says first
+std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_status,
+                                            const std::string& description);
+/// Of ./run.
+extern const char* const kRunDescription;
 
 }  // namespace nextview

@@ -277,4 +277,16 @@ VisibilityParameters visibility_of(const run_config_t& config) {
   return visibility;
 }
 
+ViewBoundQuestion bound_question_of(const RunOptions& options, const run_config_t& config) {
+  ViewBoundQuestion question;
+  question.start = start_pose_of(config);
+  question.visibility = visibility_of(config);
+  question.poses.sensor = TiltedLineScan::with_aperture(options.columns, options.rows,
+                                                        options.aperture_deg * kRadPerDegree);
+  question.poses.limits = options.range;
+  question.poses.grid = grid_of(config);
+  question.poses.spacing_m = options.bound_spacing_m;
+  return question;
+}
+
 }  // namespace nextview

@@ -8,6 +8,7 @@
 #include "lcmtypes/channels.h"
 #include "runner/run_options.h"
 #include "scene/scene.h"
+#include "scoring/view_bound.h"
 #include "scoring/visible_surface.h"
 
 namespace nextview {
@@ -32,5 +33,8 @@ RunSetup prepare_run(const RunOptions& options);
 
 /// Where a robot of this run may be, and what its sensor could see from there.
 VisibilityParameters visibility_of(const run_config_t& config);
+
+/// The question how few views a scene takes, for this run's sensor and start.
+ViewBoundQuestion bound_question_of(const RunOptions& options, const run_config_t& config);
 
 }  // namespace nextview

@@ -34,7 +34,7 @@ const std::map<std::string, Arrows> kArrows = {
     {"planner/prediction", {{"sensor", "mapper"}, {}}},
     {"planner", {{"sensor", "mapper", "planner/prediction"}, {}}},
     {"logger", {{}, {"sensor", "mapper", "planner"}}},
-    {"scoring", {{"sensor", "scene", "mapper"}, {}}},
+    {"scoring", {{"sensor", "scene", "sensor_sim", "mapper", "planner/prediction"}, {}}},
     {"report", {{"sensor", "scene", "mapper", "planner"}, {"logger", "scoring"}}},
     {"runner",
      {{},
