@@ -120,6 +120,9 @@ std::string check(const run_config_t& config) {
   check_planner(checks, config.planner);
   checks.require(config.strategy == "paper" || config.strategy == "surface",
                  "strategy '" + config.strategy + "' is neither paper nor surface");
+  // No view shows less than nothing: such a run would never end by itself.
+  checks.require(config.strategy != "surface" || config.planner.least_gain_m2 > 0.0,
+                 "least_gain_m2 is not above 0");
   return checks.reason();
 }
 

@@ -31,7 +31,7 @@ struct Decision {
   double expected_gain_m2 = 0.0;  ///< new surface the view is expected to show; 0: not estimated
   double overlap = 0.0;           ///< share of it that is known already; 0: not estimated
   int iterations = 0;             ///< of the search
-  int evaluations = 0;            ///< positions tried, = tried.size()
+  int evaluations = 0;            ///< positions tried; tried holds the first
   std::vector<TriedPosition> tried;
 };
 

@@ -13,6 +13,9 @@ namespace {
 
 /// With fewer positions than this their spacing is halved.
 constexpr std::size_t kFewPositions = 40;
+/// Of the positions judged so many are told, at most: what was tried for a goal has to fit one
+/// message.
+constexpr std::size_t kMostTried = 1200;
 /// So many positions are refined.
 constexpr std::size_t kRefined = 4;
 
@@ -238,11 +241,12 @@ Decision SurfaceStrategy::decision(const SurfaceGain::Known& known,
   decision.overlap = chosen.view.overlap;
   decision.reason = in_words(best, positions);
   for (const CandidateView& tried : candidates_.judged()) {
+    if (decision.tried.size() == kMostTried) break;
     const Orientation& direction = gain_.orientations()[tried.view.orientation];
     decision.tried.push_back({clear_->grid().center_m(tried.voxel), direction.pan_rad,
                               direction.tilt_rad, tried.score / std::max(chosen.score, 1e-9)});
   }
-  decision.evaluations = static_cast<int>(decision.tried.size());
+  decision.evaluations = static_cast<int>(candidates_.judged().size());
   return decision;
 }
 

@@ -16,16 +16,16 @@ namespace nextview {
 
 /// How surfaces are looked for; docs/strategy.md says what each of them is worth.
 struct SurfaceParameters {
-  double path_cost_per_m = 0.1;     ///< lambda; 0: fewest views, whatever the way
+  double path_cost_per_m = 0.12;    ///< lambda; 0: fewest views, whatever the way
   double unknown_weight = 0.3;      ///< of unknown voxels beside those of grown planes
   bool grow_planes = true;          ///< without them unknown voxels should weigh 1
-  double improvement_weight = 0.0;  ///< of quality; 0.3 with --quality
+  double improvement_weight = 0.0;  ///< of quality; 0: it does not count
   double min_overlap = 0.2;         ///< of a view with what is known
-  double least_new_area_m2 = 0.02;  ///< the run ends when no view is expected to show more
+  double least_new_area_m2 = 0.05;  ///< the run ends when no view is expected to show more
   double first_departure_m = 0.8;   ///< of the first move (FeasibilityParameters::departure_m)
   double departure_m = 0.3;         ///< of all others
   bool return_home = false;         ///< to the first view's pose, when nothing is left
-  int spacing_voxels = 4;           ///< between candidate positions
+  int spacing_voxels = 3;           ///< between candidate positions
   FeasibilityParameters feasibility;
 
   /// @throws std::invalid_argument naming the parameter that cannot be

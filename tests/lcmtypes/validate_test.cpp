@@ -318,5 +318,24 @@ TEST(Validate, RunConfig) {
   });
 }
 
+TEST(Validate, WhatTheSurfaceStrategyReads) {
+  const auto refused = [](void (*change)(planner_config_t&)) {
+    run_config_t config = example<run_config_t>();
+    config.strategy = "surface";
+    config.planner.path_cost_per_m = 0.1;
+    config.planner.later_departure_m = 0.3;
+    config.planner.least_overlap = 0.2;
+    config.planner.least_gain_m2 = 0.05;
+    config.planner.return_home = 1;
+    change(config.planner);
+    return !check(config).empty();
+  };
+  EXPECT_FALSE(refused([](planner_config_t&) {}));
+  EXPECT_TRUE(refused([](planner_config_t& m) { m.path_cost_per_m = -0.1; }));
+  EXPECT_TRUE(refused([](planner_config_t& m) { m.later_departure_m = kNan; }));
+  EXPECT_TRUE(refused([](planner_config_t& m) { m.least_overlap = 1.0; }));
+  EXPECT_TRUE(refused([](planner_config_t& m) { m.least_gain_m2 = 0.0; }));
+}
+
 }  // namespace
 }  // namespace nextview

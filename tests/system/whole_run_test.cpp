@@ -81,6 +81,21 @@ TEST(WholeRun, EndsByItsStopRule) {
   EXPECT_EQ(summary.at("views"), 5) << "four views after the one at the start";
 }
 
+TEST(WholeRun, BySurfaceEndsWhenNothingIsLeftAndReplays) {
+  const TemporaryFolder folder;
+  const Outcome outcome = run_views(folder / "run", 60, {"--strategy", "surface"});
+  ASSERT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_NE(outcome.output.find("of boundary left unseen"), std::string::npos) << outcome.output;
+  const nlohmann::json summary = summary_of(folder / "run");
+  EXPECT_EQ(summary.at("stop_reason"), "nothing_left");
+  EXPECT_LE(summary.at("views").get<int>(), 45);
+  EXPECT_GE(summary.at("surface_coverage").get<double>(), 0.998);
+  EXPECT_EQ(summary.at("collisions"), 0);
+  const Outcome replay = replay_folder(folder / "run", {"--planner"});
+  EXPECT_EQ(replay.status, 0) << replay.output;
+  EXPECT_NE(replay.output.find("every one the same"), std::string::npos) << replay.output;
+}
+
 TEST(WholeRun, WithQualityRepeatsAndReplays) {
   const TemporaryFolder folder;
   ASSERT_EQ(run_views(folder / "run", 6, {"--quality", "--range-noise-m", "0.01"}).status, 0);
