@@ -51,7 +51,7 @@ struct RunOptions {
   int margin_voxels = 1;
 
   double clearance_m = FeasibilityParameters{}.clearance_m;
-  std::string strategy = PaperStrategy::kName;
+  std::string strategy = SurfaceStrategy::kName;
   double departure_m = FeasibilityParameters{}.departure_m;
   double later_departure_m = SurfaceParameters{}.departure_m;
   double path_cost_per_m = SurfaceParameters{}.path_cost_per_m;

@@ -15,7 +15,19 @@ const std::filesystem::path kScenes = std::filesystem::path(NEXTVIEW_SOURCE_DIR)
 RunOptions boxes() {
   RunOptions options;
   options.scenes_folder = kScenes.string();
+  options.strategy = "paper";
   return options;
+}
+
+TEST(RunSetup, LooksForSurfaceUnlessToldOtherwise) {
+  RunOptions options;
+  options.scenes_folder = kScenes.string();
+  const run_config_t config = prepare_run(options).config;
+  EXPECT_EQ(check(config), "");
+  EXPECT_EQ(config.strategy, "surface");
+  EXPECT_EQ(config.planner.max_views, 1000);
+  EXPECT_EQ(config.planner.directions, 320);
+  EXPECT_GT(config.planner.least_gain_m2, 0.0);
 }
 
 TEST(RunSetup, OfThePapersRoomIsThePapers) {

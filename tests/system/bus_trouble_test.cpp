@@ -91,7 +91,8 @@ TEST(BusTrouble, ThatComesInMidRunLeavesTheArtefacts) {
       "ip link set lo up && ip route add 224.0.0.0/4 dev lo && exec \"$@\"",
       "sh"};
   for (const std::string& argument :
-       run_arguments(folder / "run", 100000, {"--stop-window", "100000", "--verbose"})) {
+       run_arguments(folder / "run", 100000,
+                     {"--strategy", "paper", "--stop-window", "100000", "--verbose"})) {
     arguments.push_back(argument);
   }
   Program run(arguments);

@@ -18,7 +18,7 @@ namespace {
 class LongRun : public testing::Test {
  protected:
   void start(const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments = {"--stop-window", "100000"};
+    std::vector<std::string> arguments = {"--strategy", "paper", "--stop-window", "100000"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     run_.emplace(run_arguments(folder_ / "run", 100000, arguments));
     ASSERT_TRUE(run_->wait_for("view   3/")) << run_->output();

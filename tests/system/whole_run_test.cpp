@@ -74,16 +74,17 @@ TEST(WholeRun, EndsByItsStopRule) {
   const TemporaryFolder folder;
   // More than 89 m2 of new surface cannot come, so the rule holds as soon as it is asked.
   const Outcome outcome =
-      run_views(folder / "run", 50, {"--stop-window", "4", "--stop-new-area", "1000"});
+      run_views(folder / "run", 50,
+                {"--strategy", "paper", "--stop-window", "4", "--stop-new-area", "1000"});
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   const nlohmann::json summary = summary_of(folder / "run");
   EXPECT_EQ(summary.at("stop_reason"), "nothing_new");
   EXPECT_EQ(summary.at("views"), 5) << "four views after the one at the start";
 }
 
-TEST(WholeRun, BySurfaceEndsWhenNothingIsLeftAndReplays) {
+TEST(WholeRun, EndsWhenNothingIsLeftAndReplays) {
   const TemporaryFolder folder;
-  const Outcome outcome = run_views(folder / "run", 60, {"--strategy", "surface"});
+  const Outcome outcome = run_views(folder / "run", 60);
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   EXPECT_NE(outcome.output.find("of boundary left unseen"), std::string::npos) << outcome.output;
   const nlohmann::json summary = summary_of(folder / "run");
