@@ -63,7 +63,13 @@ void RunLog::take_as(const LoggedMessage& message) {
         seen_.emplace(std::pair(message.channel, key), Hash(hash.high64, hash.low64));
     if (!is_new) {
       ++counters_.duplicates;
-      if (seen->second != Hash(hash.high64, hash.low64)) {
+      if (seen->second == Hash(hash.high64, hash.low64)) return;
+      if constexpr (std::is_same_v<Message, stop_t>) {
+        // A planner's end and the run's own can cross each other.
+        later_ends_.push_back("the log holds another end after the first one, " +
+                              decoded.message->stop_reason + " after view " +
+                              std::to_string(decoded.message->views));
+      } else {
         contradictions_.push_back(
             describe(MissingMessage{Channel<Message>::name, key.view, key.attempt}) +
             " is there twice, and the two differ");

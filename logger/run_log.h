@@ -45,6 +45,8 @@ class RunLog {
   const std::vector<std::string>& dropped() const { return dropped_; }
   /// Messages that are there twice but differ, one line each.
   const std::vector<std::string>& contradictions() const { return contradictions_; }
+  /// Ends of the run after the first one, which counts, one line each.
+  const std::vector<std::string>& later_ends() const { return later_ends_; }
   /// Bytes at the end that are no whole message.
   std::int64_t bytes_left() const { return reader_.bytes_left(); }
 
@@ -63,6 +65,7 @@ class RunLog {
   std::vector<std::int64_t> other_runs_;
   std::vector<std::string> dropped_;
   std::vector<std::string> contradictions_;
+  std::vector<std::string> later_ends_;
   std::map<std::pair<std::string, MessageKey>, Hash> seen_;
   std::vector<LoggedMessage> before_config_;  // while the run is not known
 };

@@ -1,6 +1,9 @@
 #include "logger/run_record.h"
 
 #include <algorithm>
+#include <array>
+#include <functional>
+#include <iterator>
 #include <utility>
 
 #include "planner/termination.h"
@@ -17,6 +20,10 @@ const typename Map::mapped_type* find_in(const Map& map, const Key& key) {
 template <class Message>
 MissingMessage missing_message(int view, int attempt) {
   return {Channel<Message>::name, view, attempt};
+}
+template <class Message>
+MissingMessage message_of(const MessageKey& key) {
+  return missing_message<Message>(key.view, key.attempt);
 }
 
 }  // namespace
@@ -55,7 +62,7 @@ void RunRecord::add(const commit_t& commit) {
 
 void RunRecord::add(const stop_t& stop) {
   check_fits(stop.views, stop.final_attempt);
-  stop_ = stop;
+  if (!stop_) stop_ = stop;
 }
 
 void RunRecord::add(const range_image_t& part) {
@@ -102,7 +109,7 @@ const ReceivedRangeImage* RunRecord::range_image(int view, int attempt) const {
 void RunRecord::forget_range_image(int view, int attempt) { images_.erase({view, attempt, 0}); }
 
 int RunRecord::latest_view() const {
-  int latest = commits_.empty() ? 0 : commits_.rbegin()->first;
+  int latest = committed_views();
   for (const auto* by_key : {&whole_images_}) {
     if (!by_key->empty()) latest = std::max(latest, by_key->rbegin()->view);
   }
@@ -113,6 +120,14 @@ int RunRecord::latest_view() const {
 
 bool RunRecord::ends_without_goal() const {
   return stop_ && stop_->stop_reason == to_string(StopReason::NoFeasibleGoal);
+}
+
+bool RunRecord::ends_early() const {
+  if (!stop_) return true;
+  constexpr std::array kByTheRun = {StopReason::BusFailed, StopReason::NoAnswer,
+                                    StopReason::ProcessDied, StopReason::Interrupted};
+  return std::any_of(kByTheRun.begin(), kByTheRun.end(),
+                     [this](StopReason reason) { return to_string(reason) == stop_->stop_reason; });
 }
 
 void RunRecord::add_missing_attempt(int view, int attempt,
@@ -143,7 +158,7 @@ std::vector<MissingMessage> RunRecord::missing() const {
   std::vector<MissingMessage> missing;
   if (!config_) missing.push_back(missing_message<run_config_t>(0, 0));
   if (!stop_) missing.push_back(missing_message<stop_t>(0, 0));
-  const int views = stop_ ? stop_->views : latest_view();
+  const int views = stop_ ? std::max(stop_->views, views_taken()) : latest_view();
   for (int view = 1; view <= views; ++view) {
     const auto of_view = missing_of_view(view);
     missing.insert(missing.end(), of_view.begin(), of_view.end());
@@ -159,10 +174,31 @@ std::vector<MissingMessage> RunRecord::missing() const {
   return missing;
 }
 
-int RunRecord::complete_views() const {
-  int views = 0;
-  while (missing_of_view(views + 1).empty()) ++views;
-  return views;
+int RunRecord::committed_views() const { return commits_.empty() ? 0 : commits_.rbegin()->first; }
+
+int RunRecord::views_taken() const { return std::max(committed_views(), latest_view() - 1); }
+
+int RunRecord::final_attempt(int view) const {
+  if (const commit_t* committed = commit(view)) return committed->attempt;
+  const auto latest_in = [view](const auto& by_key, const auto& key_of_entry) {
+    const auto after = by_key.lower_bound({view + 1, 0, 0});
+    if (after == by_key.begin()) return 0;
+    const MessageKey key = key_of_entry(*std::prev(after));
+    return key.view == view ? key.attempt : 0;
+  };
+  const auto first = [](const auto& entry) { return entry.first; };
+  if (const int attempt = latest_in(whole_images_, std::identity{}); attempt > 0) return attempt;
+  return std::max(latest_in(goals_, first), latest_in(arrivals_, first));
+}
+
+std::vector<MissingMessage> RunRecord::held() const {
+  std::vector<MissingMessage> held;
+  for (const auto& [key, goal] : goals_) held.push_back(message_of<goal_t>(key));
+  for (const auto& [key, search] : searches_) held.push_back(message_of<search_t>(key));
+  for (const auto& [key, arrival] : arrivals_) held.push_back(message_of<arrival_t>(key));
+  for (const MessageKey& key : whole_images_) held.push_back(message_of<range_image_t>(key));
+  for (const auto& [view, commit] : commits_) held.push_back(message_of<commit_t>({view, 0, 0}));
+  return held;
 }
 
 }  // namespace nextview

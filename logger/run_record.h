@@ -14,12 +14,12 @@
 
 namespace nextview {
 
-/// A message somebody should publish again: a channel, and the key by which it is asked for.
+/// A message by its channel, and the key by which it is asked for.
 struct MissingMessage {
   std::string_view channel;
   int view = 0;
   int attempt = 0;
-  bool operator==(const MissingMessage&) const = default;
+  auto operator<=>(const MissingMessage&) const = default;
 };
 
 /// "NEXTVIEW_GOAL of view 3, attempt 1".
@@ -44,6 +44,7 @@ class RunRecord {
   void add(const arrival_t& arrival);
   void add(const range_image_t& part);
   void add(const commit_t& commit);
+  /// The first end counts: a run that has ended cannot end again.
   void add(const stop_t& stop);
   void add(const timing_t& timing);
 
@@ -66,14 +67,25 @@ class RunRecord {
   int latest_view() const;
   /// Whether the planner has ended in the middle of a view's attempts; see stop_t::final_attempt.
   bool ends_without_goal() const;
+  /// Whether the run was ended while the planner would have gone on: no end, or one of those that
+  /// the run publishes itself.
+  bool ends_early() const;
 
   /// What a committed view needs and is not there: its commit, else for each attempt its goal,
   /// search and arrival, and the range image.
   std::vector<MissingMessage> missing_of_view(int view) const;
-  /// What a whole run needs and is not there. Before the stop: only what the views so far need.
+  /// What a whole run needs and is not there, for every view taken, whatever its end says.
+  /// Before the stop: what the views so far need.
   std::vector<MissingMessage> missing() const;
-  /// How many views, from the first, lack nothing.
-  int complete_views() const;
+  /// The last view that was committed, or 0.
+  int committed_views() const;
+  /// The last view that must have been taken: committed, or followed by something of a later one.
+  int views_taken() const;
+  /// The attempt at which a view was taken: its commit's, else its range image's, else the last one
+  /// there is anything of; 0 when there is nothing.
+  int final_attempt(int view) const;
+  /// Every goal, search, arrival, whole range image and commit that is here.
+  std::vector<MissingMessage> held() const;
 
  private:
   void check_fits(int view, int attempt) const;

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "lcmtypes/timing_message.h"
+#include "mapper/commit_message.h"
 #include "mapper/mapper_config.h"
 
 namespace nextview {
@@ -12,10 +13,6 @@ using Clock = std::chrono::steady_clock;
 
 double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
-}
-
-std::int64_t count(const MapStatistics& statistics, Label label) {
-  return statistics.voxels[static_cast<std::size_t>(label)];
 }
 
 }  // namespace
@@ -40,7 +37,7 @@ bool MapperProcess::step() {
   const auto start = Clock::now();
   const FoldReport& report = builder_.fold(received.image);
   const double update_wall_s = seconds_since(start);
-  commit_t commit = commit_message(received, report);
+  commit_t commit = commit_message(received, report, builder_.statistics());
   const auto digest_start = Clock::now();
   commit.map_digest = builder_.digest();
   const double digest_wall_s = seconds_since(digest_start);
@@ -50,36 +47,6 @@ bool MapperProcess::step() {
                               {{"update", update_wall_s}, {"digest", digest_wall_s}}));
   ++next_view_;
   return true;
-}
-
-commit_t MapperProcess::commit_message(const ReceivedRangeImage& received,
-                                       const FoldReport& report) {
-  commit_t commit{};
-  commit.utime = received.utime;
-  commit.view = received.view;
-  commit.attempt = received.attempt;
-  for (int axis = 0; axis < 3; ++axis) {
-    commit.used_position_m[axis] = received.image.position_m[axis];
-  }
-  commit.pan_rad = received.image.pose.pan_rad;
-  commit.tilt_rad = received.image.pose.tilt_rad;
-
-  const MapStatistics statistics = builder_.statistics();
-  commit.unmarked_voxels = count(statistics, Label::Unmarked);
-  commit.occluded_voxels = count(statistics, Label::Occluded);
-  commit.occlusion_plane_voxels = count(statistics, Label::OcclusionPlane);
-  commit.empty_voxels = count(statistics, Label::Empty);
-  commit.occupied_voxels = count(statistics, Label::Occupied);
-  commit.newly_occupied_voxels = report.newly_occupied;
-  commit.occupied_area_m2 = statistics.occupied_area_m2;
-  commit.occlusion_plane_area_m2 = statistics.occlusion_plane_area_m2;
-  commit.mean_quality = statistics.mean_quality;
-  commit.min_quality = statistics.min_quality;
-  commit.points = report.points;
-  commit.points_outside = report.points_outside;
-  commit.no_returns = report.no_returns;
-  commit.invalid = report.invalid;
-  return commit;
 }
 
 void MapperProcess::ask_again() {

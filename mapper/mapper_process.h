@@ -23,7 +23,6 @@ class MapperProcess : public BusProcess {
 
  private:
   void receive(const range_image_t& part);
-  commit_t commit_message(const ReceivedRangeImage& received, const FoldReport& report);
 
   Bus& bus_;
   run_config_t config_;

@@ -60,4 +60,9 @@ goal_t start_goal_message(const SensorPose& start, const std::string& strategy) 
   return goal;
 }
 
+std::string describe_refusals(int view, int attempts, const std::string& last_refusal) {
+  return "view " + std::to_string(view) + ": the base refused " + std::to_string(attempts) +
+         " goals, the last one because " + last_refusal;
+}
+
 }  // namespace nextview

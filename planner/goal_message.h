@@ -15,4 +15,7 @@ search_t search_message(const Decision& decision);
 /// The goal of view 1: the start pose, where the sensor is already.
 goal_t start_goal_message(const SensorPose& start, const std::string& strategy);
 
+/// Why a run ends when the base has refused every goal of a view, for people.
+std::string describe_refusals(int view, int attempts, const std::string& last_refusal);
+
 }  // namespace nextview

@@ -95,9 +95,7 @@ void PlannerProcess::finish_view(const commit_t& commit) {
 void PlannerProcess::refused(const arrival_t& arrival) {
   utime_ = arrival.utime;
   if (view_ == 1 || attempt_ >= config_.planner.max_attempts) {
-    stop(StopReason::NoFeasibleGoal, "view " + std::to_string(view_) + ": the base refused " +
-                                         std::to_string(attempt_) +
-                                         " goals, the last one because " + arrival.refusal);
+    stop(StopReason::NoFeasibleGoal, describe_refusals(view_, attempt_, arrival.refusal));
     return;
   }
   ++attempt_;

@@ -256,7 +256,7 @@ void Run::end_early(const EndsEarly& end) {
     // The planner has not ended the run, so that its log says how it ended somebody else must.
     log_->read_on();
     stop_t stop{};
-    stop.views = log_->record().complete_views();
+    stop.views = log_->record().views_taken();
     stop.stop_reason = std::string(to_string(end.reason));
     stop.detail = end.detail;
     bus_->publish(stop);

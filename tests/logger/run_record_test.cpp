@@ -29,7 +29,7 @@ TEST(RunRecord, OfAWholeRunLacksNothing) {
   EXPECT_EQ(record.missing(), (Missing{{"NEXTVIEW_STOP", 0, 0}}));
   record.add(stop_after(2, 0, "view_limit"));
   EXPECT_EQ(record.missing(), Missing{});
-  EXPECT_EQ(record.complete_views(), 2);
+  EXPECT_EQ(record.committed_views(), 2);
   EXPECT_EQ(record.latest_view(), 2);
 }
 
@@ -44,7 +44,7 @@ TEST(RunRecord, NamesWhatAViewLacks) {
                                                 {"NEXTVIEW_ARRIVAL", 2, 2},
                                                 {"NEXTVIEW_RANGE_IMAGE", 2, 2}}));
   EXPECT_EQ(record.missing_of_view(1), (Missing{{"NEXTVIEW_COMMIT", 1, 0}}));
-  EXPECT_EQ(record.complete_views(), 0);
+  EXPECT_EQ(record.committed_views(), 2);
 }
 
 TEST(RunRecord, ViewOneNeedsNoSearch) {

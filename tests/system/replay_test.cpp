@@ -44,7 +44,13 @@ class RecordedRun : public testing::Test {
   }
 
   static void expect_disagreement(const Outcome& replay, const std::string& words) {
-    EXPECT_EQ(replay.status, 1) << replay.output;
+    expect_outcome(replay, 1, words);
+  }
+  static void expect_lack(const Outcome& replay, const std::string& words) {
+    expect_outcome(replay, 3, words);
+  }
+  static void expect_outcome(const Outcome& replay, int status, const std::string& words) {
+    EXPECT_EQ(replay.status, status) << replay.output;
     EXPECT_NE(replay.output.find(words), std::string::npos) << replay.output;
   }
 
@@ -80,7 +86,7 @@ TEST_F(RecordedRun, ARangeThatWasChangedIsFound) {
     }
     return Instead{bytes};
   });
-  expect_disagreement(replay_folder(folder), "view 4: the map rebuilt has digest ");
+  expect_disagreement(replay_folder(folder), "NEXTVIEW_COMMIT of view 4 differs in ");
 }
 
 TEST_F(RecordedRun, AnImageThatWasChangedWhereTheMapDoesNotLookIsFound) {
@@ -92,18 +98,19 @@ TEST_F(RecordedRun, AnImageThatWasChangedWhereTheMapDoesNotLookIsFound) {
     }
     return Instead{bytes};
   });
-  expect_disagreement(replay_folder(folder), "view 4: the range images so far have history digest");
+  expect_disagreement(replay_folder(folder),
+                      "NEXTVIEW_COMMIT of view 4 differs in pan_rad, history_digest");
 }
 
 TEST_F(RecordedRun, AMessageLeftOutIsFound) {
   const auto without_commit = tampered([](const lcm::LogEvent& event, const Bytes& bytes) {
     return is_view<commit_t>(event, bytes, 3) ? Instead{} : Instead{bytes};
   });
-  expect_disagreement(replay_folder(without_commit), "view 3: the log lacks NEXTVIEW_COMMIT");
+  expect_lack(replay_folder(without_commit), "the log lacks NEXTVIEW_COMMIT of view 3");
   const auto without_image = tampered([](const lcm::LogEvent& event, const Bytes& bytes) {
     return is_view<range_image_t>(event, bytes, 2) ? Instead{} : Instead{bytes};
   });
-  expect_disagreement(replay_folder(without_image), "view 2: the log lacks NEXTVIEW_RANGE_IMAGE");
+  expect_lack(replay_folder(without_image), "the log lacks NEXTVIEW_RANGE_IMAGE of view 2");
 }
 
 TEST_F(RecordedRun, AGoalThatWasChangedIsFoundByThePlanner) {
@@ -115,9 +122,14 @@ TEST_F(RecordedRun, AGoalThatWasChangedIsFoundByThePlanner) {
     }
     return Instead{bytes};
   });
-  EXPECT_EQ(replay_folder(folder).status, 0) << "the map does not depend on it";
+  const Outcome without_planner = replay_folder(folder);
+  EXPECT_EQ(without_planner.status, 0) << "the map does not depend on it";
+  EXPECT_NE(without_planner.output.find(
+                "NEXTVIEW_GOAL (decided again with --planner only): waypoints factors fitness"),
+            std::string::npos)
+      << without_planner.output;
   expect_disagreement(replay_folder(folder, {"--planner"}),
-                      "view 5: the goal of attempt 1 differs in its fitness");
+                      "NEXTVIEW_GOAL of view 5, attempt 1 differs in fitness");
 }
 
 TEST_F(RecordedRun, TwoMessagesThatContradictEachOtherAreFound) {
@@ -139,7 +151,7 @@ TEST_F(RecordedRun, AMessageThatCannotBeRightIsLeftOut) {
   });
   ASSERT_TRUE(broken);
   const Outcome replay = replay_folder(folder);
-  expect_disagreement(replay, "view 2: the log lacks NEXTVIEW_COMMIT");
+  expect_lack(replay, "the log lacks NEXTVIEW_COMMIT of view 2");
   EXPECT_NE(replay.output.find("left out: a message on NEXTVIEW_COMMIT cannot be right"),
             std::string::npos)
       << replay.output;
@@ -149,7 +161,7 @@ TEST_F(RecordedRun, ALogThatWasCutOffIsFound) {
   const auto log = folder_ / "run" / "run.lcmlog";
   std::filesystem::resize_file(log, std::filesystem::file_size(log) / 2);
   const Outcome replay = replay_folder(folder_ / "run");
-  expect_disagreement(replay, "view ");
+  expect_lack(replay, "the log lacks NEXTVIEW_STOP");
   EXPECT_NE(replay.output.find("are no whole message"), std::string::npos) << replay.output;
 }
 

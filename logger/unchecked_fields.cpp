@@ -1,0 +1,88 @@
+#include "logger/unchecked_fields.h"
+
+#include <algorithm>
+
+#include "logger/expected_message.h"
+
+namespace nextview {
+
+std::vector<UncheckedFields> unchecked_fields(const RunRecord& run, bool planner) {
+  constexpr std::string_view kConfig = Channel<run_config_t>::name;
+  constexpr std::string_view kGoal = Channel<goal_t>::name;
+  constexpr std::string_view kSearch = Channel<search_t>::name;
+  constexpr std::string_view kArrival = Channel<arrival_t>::name;
+  constexpr std::string_view kStop = Channel<stop_t>::name;
+  constexpr std::string_view kForPeople = "for people, or of the moment";
+  std::vector<UncheckedFields> unchecked = {
+      {kForPeople, Channel<timing_t>::name, {"*"}},
+      {kForPeople, Channel<status_t>::name, {"*"}},
+      {kForPeople, Channel<request_t>::name, {"*"}},
+      {kForPeople, kConfig, {"scene_name", "program_version", "planner.threads"}},
+      {"only the scene could tell, which a replay does not read",
+       kConfig,
+       {"has_scene", "scene.unit_m", "scene.origin_in_file_m", "scene_file", "scene_up",
+        "scene_digest", "sensor.range_noise_m"}},
+      {"only the scene could tell, which a replay does not read", kArrival, {"refusal"}},
+      {"how long a motion takes, the base says",
+       kConfig,
+       {"base.base_speed_m_s", "base.lift_speed_m_s", "base.turn_speed_rad_s"}},
+      {"shows only where a decision depends on it",
+       kConfig,
+       {"base.body_radius_m",        "base.workspace_min_m",  "base.workspace_max_m",
+        "base.lift_min_m",           "base.lift_max_m",       "planner.max_attempts",
+        "planner.max_evaluations",   "planner.step_min_m",    "planner.step_max_m",
+        "planner.fitness_tolerance", "planner.clearance_m",   "planner.departure_m",
+        "planner.quality_threshold", "planner.stop_rule",     "planner.stop_window_views",
+        "planner.stop_new_area_m2",  "planner.max_views",     "planner.path_cost_per_m",
+        "planner.later_departure_m", "planner.least_overlap", "planner.least_gain_m2",
+        "planner.return_home"}},
+      {"the size of the map's window is free as long as it holds what was seen",
+       kConfig,
+       {"map.window_min", "map.window_size"}},
+  };
+  if (run.ends_early()) {
+    unchecked.push_back(
+        {"why a run ended early, it says itself", kStop, {"stop_reason", "detail"}});
+  }
+  if (!is_simulated(*run.config())) {
+    constexpr std::string_view kRobot = "what a real robot and its sensor say is believed";
+    unchecked.push_back(
+        {kRobot,
+         kArrival,
+         {"utime", "true_position_m", "true_pan_rad", "true_tilt_rad", "path_length_m"}});
+    unchecked.push_back({kRobot,
+                         kConfig,
+                         {"sensor.columns", "sensor.rows", "sensor.geometry_parameter",
+                          "sensor.range_min_m", "sensor.range_max_m", "sensor.scan_duration_s"}});
+  }
+  if (!planner) {
+    constexpr std::string_view kDecided = "decided again with --planner only";
+    unchecked.push_back({"of a goal that was refused, decided again with --planner only",
+                         kGoal,
+                         {"pan_rad", "tilt_rad"}});
+    unchecked.push_back(
+        {kDecided,
+         kGoal,
+         {"waypoints", "factors", "fitness", "share_occupied", "share_occlusion_plane",
+          "share_unseen", "share_open", "factor_value", "expected_gain_m2", "overlap", "iterations",
+          "evaluations", "factor_names", "reason"}});
+    unchecked.push_back({kDecided,
+                         kSearch,
+                         {"tried", "tried_position_m", "tried_pan_rad", "tried_tilt_rad",
+                          "tried_fitness", "tried_move"}});
+    unchecked.push_back(
+        {kDecided, kConfig, {"seed", "planner.directions", "planner.quality_weight"}});
+  }
+  return unchecked;
+}
+
+bool is_unchecked(std::span<const UncheckedFields> unchecked, std::string_view channel,
+                  const std::string& field) {
+  return std::any_of(unchecked.begin(), unchecked.end(), [&](const UncheckedFields& some) {
+    return some.channel == channel &&
+           std::any_of(some.fields.begin(), some.fields.end(),
+                       [&](const std::string& name) { return name == "*" || name == field; });
+  });
+}
+
+}  // namespace nextview

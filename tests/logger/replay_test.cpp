@@ -1,0 +1,244 @@
+// What a replay makes of logs that are not what they seem to be. See also tests/system, which
+// replays the logs of real runs.
+
+#include "logger/replay.h"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "tests/logger/recorded_run.h"
+
+namespace nextview {
+namespace {
+
+const Recording& recorded() {
+  static const Recording recording = record_run();
+  return recording;
+}
+
+ReplayReport replayed(const Recording& recording, bool planner = true) {
+  return replay(log_of(recording), {.planner = planner});
+}
+
+std::string lines_of(const ReplayReport& report) {
+  std::string text;
+  for (const auto* lines : {&report.differences, &report.missing, &report.remarks}) {
+    for (const std::string& line : *lines) text += line + "\n";
+  }
+  return text;
+}
+
+/// The status of a replay, with and without the planner, and one of its lines.
+void expect_status(const Recording& recording, int status, const std::string& words) {
+  for (const bool planner : {false, true}) {
+    const ReplayReport report = replayed(recording, planner);
+    EXPECT_EQ(report.exit_status(), status) << lines_of(report);
+    EXPECT_NE(lines_of(report).find(words), std::string::npos) << "not said: " << words << "\n"
+                                                               << lines_of(report);
+  }
+}
+
+template <class Message>
+bool any(const Message&) {
+  return true;
+}
+
+Recording ended_by(const std::string& reason, int views, const Recording& recording = recorded()) {
+  return changed<stop_t>(recording, [&](stop_t& stop) {
+    stop.utime = 0;
+    stop.views = views;
+    stop.final_attempt = 0;
+    stop.stop_reason = reason;
+    stop.detail = "for a test";
+  });
+}
+
+TEST(Replay, AgreesToARunWithARefusal) {
+  const ReplayReport report = replayed(recorded());
+  EXPECT_EQ(report.exit_status(), 0) << lines_of(report);
+  EXPECT_EQ(report.views, 4);
+  EXPECT_EQ(report.goals, 4);  // two at view 3
+  EXPECT_EQ(report.stop_reason, "view_limit");
+  EXPECT_TRUE(report.remarks.empty()) << lines_of(report);
+}
+
+TEST(Replay, FindsAnEndThatKnowsOfNoView) {
+  const auto log = changed<stop_t>(recorded(), [](stop_t& stop) { stop.views = 0; });
+  expect_status(log, 1, "it says 0, beyond which the log holds views 1 to 4");
+  for (const bool planner : {false, true}) EXPECT_EQ(replayed(log, planner).views, 4);
+}
+
+TEST(Replay, FindsCommitsWithoutStatistics) {
+  const auto log = changed<commit_t>(recorded(), [](commit_t& commit) {
+    commit_t zeroed{};
+    zeroed.utime = commit.utime;
+    zeroed.run = commit.run;
+    zeroed.view = commit.view;
+    zeroed.attempt = commit.attempt;
+    std::copy_n(commit.used_position_m, 3, zeroed.used_position_m);
+    zeroed.pan_rad = commit.pan_rad;
+    zeroed.tilt_rad = commit.tilt_rad;
+    zeroed.map_digest = commit.map_digest;
+    zeroed.history_digest = commit.history_digest;
+    commit = zeroed;
+  });
+  expect_status(log, 1, "NEXTVIEW_COMMIT of view 2 differs in unmarked_voxels");
+  EXPECT_EQ(replayed(log).differences.size(), 4U);
+}
+
+TEST(Replay, FindsPosesMovedByAMetre) {
+  expect_status(changed<arrival_t>(recorded(), [](arrival_t& a) { a.true_position_m[0] += 1.0; }),
+                1, "NEXTVIEW_ARRIVAL of view 2, attempt 1 differs in true_position_m");
+  expect_status(
+      changed<arrival_t>(recorded(), [](arrival_t& a) { a.believed_position_m[0] += 1.0; }), 1,
+      "NEXTVIEW_ARRIVAL of view 2, attempt 1 differs in believed_position_m");
+  expect_status(changed<goal_t>(recorded(), [](goal_t& goal) { goal.position_m[0] += 1.0; }), 1,
+                "NEXTVIEW_GOAL of view 2, attempt 1 differs in ");
+  expect_status(
+      changed<commit_t>(recorded(), [](commit_t& commit) { commit.used_position_m[0] += 1.0; }), 1,
+      "NEXTVIEW_COMMIT of view 2 differs in used_position_m");
+  expect_status(
+      changed<range_image_t>(recorded(), [](range_image_t& part) { part.position_m[0] += 0.1; }), 1,
+      "NEXTVIEW_RANGE_IMAGE of view 2, attempt 1: its pose is not the one the robot arrived at");
+  // All of them at once agree with each other, but not with the maps.
+  Recording all = changed<arrival_t>(recorded(), [](arrival_t& arrival) {
+    arrival.true_position_m[1] += 0.1;
+    arrival.believed_position_m[1] += 0.1;
+  });
+  all = changed<goal_t>(all, [](goal_t& goal) {
+    goal.position_m[1] += 0.1;
+    for (auto& waypoint_m : goal.waypoint_m) waypoint_m[1] += 0.1;
+  });
+  all = changed<range_image_t>(all, [](range_image_t& part) { part.position_m[1] += 0.1; });
+  all = changed<commit_t>(all, [](commit_t& commit) { commit.used_position_m[1] += 0.1; });
+  expect_status(all, 1, "history_digest");
+}
+
+TEST(Replay, FindsArrivalsThatWereRefused) {
+  const auto log = changed<arrival_t>(recorded(), [](arrival_t& arrival) {
+    arrival.arrived = 0;
+    arrival.refusal = "it did not want to";
+  });
+  expect_status(log, 1, "NEXTVIEW_ARRIVAL of view 2, attempt 1 differs in arrived, refusal");
+}
+
+TEST(Replay, FindsARefusalThatWasAnArrival) {
+  const auto log = changed<arrival_t>(recorded(), [](arrival_t& arrival) {
+    arrival.arrived = 1;
+    arrival.refusal.clear();
+  });
+  expect_status(log, 1, "NEXTVIEW_ARRIVAL of view 3, attempt 1 differs in arrived");
+}
+
+TEST(Replay, FindsALastHalfThatWasCutOut) {
+  Recording log = changed<stop_t>(recorded(), [](stop_t& stop) { stop.views = 2; });
+  log = without<goal_t>(log, [](const goal_t& goal) { return goal.view > 2; });
+  log = without<search_t>(log, [](const search_t& search) { return search.view > 2; });
+  log = without<arrival_t>(log, [](const arrival_t& arrival) { return arrival.view > 2; });
+  log = without<range_image_t>(log, [](const range_image_t& part) { return part.view > 2; });
+  log = without<commit_t>(log, [](const commit_t& commit) { return commit.view > 2; });
+  expect_status(log, 1, "NEXTVIEW_STOP says view_limit after view 2, where the planner goes on");
+}
+
+TEST(Replay, FindsAMiddleThatWasCutOut) {
+  Recording log = without<commit_t>(
+      recorded(), [](const commit_t& commit) { return commit.view == 2 || commit.view == 3; });
+  log = without<range_image_t>(
+      log, [](const range_image_t& part) { return part.view == 2 || part.view == 3; });
+  expect_status(log, 3, "the log lacks NEXTVIEW_COMMIT of view 2");
+  expect_status(log, 3, "the maps from there on cannot be rebuilt");
+}
+
+TEST(Replay, ChecksViewsBeyondAnEarlyEndAndNamesThem) {
+  expect_status(ended_by("process_died", 2), 1, "it says 2, beyond which the log holds views 3 to");
+  EXPECT_EQ(replayed(ended_by("process_died", 2)).views, 4);
+}
+
+TEST(Replay, AgreesToAnEarlyEndThatCountsItsViews) {
+  for (const char* reason : {"process_died", "no_answer", "interrupted"}) {
+    const ReplayReport report = replayed(ended_by(reason, 4));
+    EXPECT_EQ(report.exit_status(), 0) << lines_of(report);
+    EXPECT_EQ(report.views, 4);
+  }
+}
+
+TEST(Replay, NamesAViewThatHadBeenBegun) {
+  const Recording log = without<commit_t>(ended_by("process_died", 3),
+                                          [](const commit_t& commit) { return commit.view == 4; });
+  expect_status(log, 0, "view 4 had been begun, and its range image taken");
+  EXPECT_EQ(replayed(log).views, 3);
+}
+
+TEST(Replay, NeverAgreesToNothing) {
+  Recording log = without<commit_t>(ended_by("interrupted", 0), any<commit_t>);
+  log = without<range_image_t>(log, any<range_image_t>);
+  log = without<goal_t>(log, any<goal_t>);
+  log = without<search_t>(log, any<search_t>);
+  log = without<arrival_t>(log, any<arrival_t>);
+  expect_status(log, 3, "no view is in the log");
+  expect_status(without<run_config_t>(recorded(), any<run_config_t>), 1,
+                "no run's configuration is in the log");
+}
+
+TEST(Replay, NamesWhatIsMissing) {
+  expect_status(without<stop_t>(recorded(), any<stop_t>), 3, "the log lacks NEXTVIEW_STOP");
+  expect_status(without<search_t>(recorded(), [](const search_t& s) { return s.view == 2; }), 3,
+                "the log lacks NEXTVIEW_SEARCH of view 2, attempt 1");
+  expect_status(without<goal_t>(recorded(), [](const goal_t& g) { return g.view == 4; }), 3,
+                "the log lacks NEXTVIEW_GOAL of view 4, attempt 1");
+  const Recording without_commit =
+      without<commit_t>(recorded(), [](const commit_t& commit) { return commit.view == 2; });
+  expect_status(without_commit, 3, "the log lacks NEXTVIEW_COMMIT of view 2");
+  EXPECT_EQ(replayed(without_commit).views, 3) << "the image is there to be folded";
+}
+
+TEST(Replay, FindsMessagesThatNothingLedTo) {
+  Recording log = recorded();
+  for (const auto& [channel, bytes] : recorded()) {
+    if (channel != Channel<goal_t>::name) continue;
+    goal_t goal = *decode_checked<goal_t>(bytes).message;
+    goal.attempt = 3;
+    log.emplace_back(channel, encode(goal));
+  }
+  expect_status(log, 1, "NEXTVIEW_GOAL of view 2, attempt 3 is there, and nothing in the run led");
+}
+
+TEST(Replay, FindsAnEndForAReasonThatDoesNotHold) {
+  for (const char* reason :
+       {"nothing_new", "quality_reached", "no_feasible_goal", "digest_mismatch", "made_up"}) {
+    const auto log = changed<stop_t>(recorded(), [&](stop_t& stop) { stop.stop_reason = reason; });
+    for (const bool planner : {false, true}) {
+      EXPECT_NE(replayed(log, planner).exit_status(), 0) << reason;
+    }
+  }
+}
+
+TEST(Replay, TakesTheFirstOfTwoEnds) {
+  Recording log = recorded();
+  for (const auto& logged : ended_by("process_died", 3)) {
+    if (logged.first == Channel<stop_t>::name) log.push_back(logged);
+  }
+  expect_status(log, 0, "the log holds another end after the first one, process_died after view 3");
+  EXPECT_EQ(replayed(log).stop_reason, "view_limit");
+}
+
+TEST(Replay, FindsOneRefusalTooMany) {
+  // As if the run had ended at view 3, whose only logged attempt was refused.
+  Recording log = recorded();
+  log = without<goal_t>(log, [](const goal_t& g) { return g.view == 4 || g.attempt > 1; });
+  log = without<search_t>(log, [](const search_t& s) { return s.view == 4 || s.attempt > 1; });
+  log = without<arrival_t>(log, [](const arrival_t& a) { return a.view == 4 || a.attempt > 1; });
+  log = without<range_image_t>(log, [](const range_image_t& p) { return p.view > 2; });
+  log = without<commit_t>(log, [](const commit_t& c) { return c.view > 2; });
+  log = changed<stop_t>(log, [](stop_t& stop) {
+    stop.views = 2;
+    stop.final_attempt = 1;
+    stop.stop_reason = "no_feasible_goal";
+    stop.detail = "view 3: the base refused 1 goals, the last one because a chair is in the way";
+  });
+  expect_status(log, 1, "NEXTVIEW_STOP");
+}
+
+}  // namespace
+}  // namespace nextview
