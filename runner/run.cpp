@@ -242,24 +242,66 @@ void Run::collect_statuses() {
   }
 }
 
+std::set<MissingMessage> Run::lacking_in_log() const {
+  const RunRecord& logged = log_->record();
+  std::set<MissingMessage> lacking;
+  for (const MissingMessage& missing : logged.missing()) {
+    if (missing.view > 0 && missing.view <= logged.views_taken()) lacking.insert(missing);
+  }
+  const std::vector<MissingMessage> in_log = logged.held();
+  const std::set<MissingMessage> there(in_log.begin(), in_log.end());
+  for (const MissingMessage& heard : record_.held()) {
+    if (!there.contains(heard)) lacking.insert(heard);
+  }
+  return lacking;
+}
+
+void Run::read_log_to_its_end() {
+  // The recorder is behind, and the view under way still counts. Neither is waited for when it does
+  // not get on, nor for ever.
+  constexpr milliseconds kQuiet{100};
+  constexpr milliseconds kPatience{1000};
+  constexpr milliseconds kLongest{10000};
+  AskTimer reminder = reminder_after(milliseconds(20));
+  const auto start = Clock::now();
+  auto grew = start;
+  std::size_t had = 0;
+  for (;;) {
+    bus_->handle(milliseconds(5));
+    log_->read_on();
+    const RunRecord& logged = log_->record();
+    const auto now = Clock::now();
+    if (const std::size_t has = logged.held().size(); has != had) {
+      had = has;
+      grew = now;
+    }
+    const std::set<MissingMessage> lacking = lacking_in_log();
+    const bool whole = lacking.empty() && logged.latest_view() == logged.committed_views();
+    if (now - grew > (whole ? kQuiet : kPatience) || now - start > kLongest) return;
+    if (!reminder.due()) continue;
+    bus_->request<status_t>(0, 0);  // the recorder writes out what it holds when more comes
+    for (const MissingMessage& message : lacking) request(message);
+  }
+}
+
 void Run::end_early(const EndsEarly& end) {
   ended_early_ = end;
   if (!processes_ || !bus_) return;
   processes_->end_planner();
   try {
-    // What was under way still counts; somebody who never falls silent is not waited for.
-    const auto drained_by = Clock::now() + milliseconds(1000);
-    while (bus_->handle(milliseconds(20)) && Clock::now() < drained_by) {
-    }
+    if (!log_ || !record_.config()) return;
+    read_log_to_its_end();
     make_rows();
-    if (record_.stop() || !log_ || !record_.config()) return;
+    if (const auto& recorded = log_->record().stop()) {  // heard here or not
+      if (!record_.stop()) record_.add(*recorded);
+      return;
+    }
     // The planner has not ended the run, so that its log says how it ended somebody else must.
-    log_->read_on();
     stop_t stop{};
     stop.views = log_->record().views_taken();
     stop.stop_reason = std::string(to_string(end.reason));
     stop.detail = end.detail;
-    bus_->publish(stop);
+    bus_->publish(record_.stop().value_or(stop));
     const auto until = Clock::now() + milliseconds(1000);
     while (!log_->record().stop() && Clock::now() < until) {
       bus_->handle(milliseconds(5));

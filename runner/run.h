@@ -51,6 +51,9 @@ class Run {
   void watch();
   void complete_log();
   void collect_statuses();
+  /// What has been heard, or must have been said, and is not in the log.
+  std::set<MissingMessage> lacking_in_log() const;
+  void read_log_to_its_end();
   void end_early(const EndsEarly& end);
   FinishedRun finish(Clock::time_point program_start);
 

@@ -34,8 +34,20 @@ class LongRun : public testing::Test {
     const Outcome replay = replay_folder(folder_ / "run");
     EXPECT_EQ(replay.status, 0) << replay.output;
     EXPECT_NE(replay.output.find(stop_reason), std::string::npos) << replay.output;
+    EXPECT_GE(views_in(replay.output, std::regex("(\\d+) views replayed")),
+              views_in(run_->output(), std::regex("view +(\\d+)/")))
+        << "a view that was shown is not in the log";
     std::ifstream file(folder_ / "run" / "summary.json");
     EXPECT_EQ(nlohmann::json::parse(file).at("stop_reason"), stop_reason);
+  }
+
+  /// The last number of views that a text speaks of.
+  static int views_in(const std::string& text, const std::regex& words) {
+    int views = 0;
+    for (std::sregex_iterator found(text.begin(), text.end(), words), end; found != end; ++found) {
+      views = std::stoi((*found)[1]);
+    }
+    return views;
   }
 
   TemporaryFolder folder_;
@@ -73,8 +85,8 @@ TEST_F(LongRun, LeavesNothingBehindWhenItIsKilled) {
   run_->wait();
   expect_nothing_left();
   const Outcome replay = replay_folder(folder_ / "run");
-  EXPECT_EQ(replay.status, 1);
-  EXPECT_NE(replay.output.find("the log"), std::string::npos) << replay.output;
+  EXPECT_EQ(replay.status, 3);
+  EXPECT_NE(replay.output.find("the log lacks NEXTVIEW_STOP"), std::string::npos) << replay.output;
 }
 
 TEST_F(LongRun, SaysWhichProcessDied) {
