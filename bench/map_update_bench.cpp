@@ -82,7 +82,8 @@ void register_nextview(const RecoveredRoom& room) {
   const auto changed = std::make_shared<std::vector<std::uint32_t>>();
   const auto mark = [&room, changed](VoxelMap& map, std::size_t i, const RayEnds& of_scan) {
     changed->clear();
-    mark_rays(map, map.grid().voxel_of(room.scans()[i].position_m), of_scan.ends(), *changed);
+    mark_rays(map, map.grid().voxel_of(room.scans()[i].position_m), of_scan.ends(),
+              of_scan.shadows(), *changed);
   };
   register_update("nextview_marking", room, fresh_map,
                   [mark, ends](VoxelMap& map, std::size_t i) { mark(map, i, (*ends)[i]); });

@@ -44,9 +44,9 @@ const FoldReport& MapBuilder::fold(const RangeImage& image) {
 
   s.ray_ends.collect(image, s.map.grid(), s.map.window());  // eq. 1, eq. 2, normals (P9)
   const VoxelIndex sensor = s.map.grid().voxel_of(image.position_m);
-  s.report.newly_occupied =
-      mark_rays(s.map, sensor, s.ray_ends.ends(), s.report.changed_slots);  // P12
-  s.update_surfaces();                                                      // P9
+  s.report.newly_occupied = mark_rays(s.map, sensor, s.ray_ends.ends(), s.ray_ends.shadows(),
+                                      s.report.changed_slots);  // P12
+  s.update_surfaces();                                          // P9
   s.census.note_changes(s.blocks, s.report.changed_slots);
   s.derive();
 

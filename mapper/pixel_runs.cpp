@@ -38,6 +38,33 @@ std::size_t FindBegins(int columns, const RowEnds& ends, std::int32_t* begins) {
   return size;
 }
 
+// See PixelRuns::find_other_lines; returns how many.
+std::size_t FindOtherLines(int columns, const RowEnds& ends, const RowEnds& above,
+                           std::int32_t* found) {
+  const WideTag d;
+  const int lanes = static_cast<int>(hn::Lanes(d));
+  std::size_t size = 0;
+  for (int u = 0; u < columns; u += lanes) {
+    const auto change = [&](const RowEnds& from, int step) HWY_ATTR {
+      const auto of = [&](const std::int32_t* here, const std::int32_t* there) HWY_ATTR {
+        return hn::Xor(hn::LoadU(d, here + u), hn::LoadU(d, there + u - step));
+      };
+      return hn::Or(
+          hn::Or(hn::Or(of(ends.voxel[0], from.voxel[0]), of(ends.kind, from.kind)),
+                 hn::Or(of(ends.voxel[1], from.voxel[1]), of(ends.voxel[2], from.voxel[2]))),
+          of(ends.limit, from.limit));
+    };
+    const auto column = hn::Iota(d, u);
+    const auto from_left =
+        hn::Or(hn::Ne(change(ends, 1), hn::Zero(d)), hn::Eq(column, hn::Zero(d)));
+    const auto from_above = hn::Ne(change(above, 0), hn::Zero(d));
+    const auto is_other =
+        hn::And(hn::Lt(column, hn::Set(d, columns)), hn::And(from_left, from_above));
+    size += store_kept(d, column, is_other, found + size);
+  }
+  return size;
+}
+
 HWY_INLINE void reduce(Vector x, Vector y, Vector z, Vector count, Vector quality, PixelRun& run) {
   const Tag d;
   run.normal_sum[0] = hn::GetLane(hn::SumOfLanes(d, x));
@@ -84,22 +111,31 @@ namespace nextview {
 
 namespace {
 HWY_EXPORT(FindBegins);
+HWY_EXPORT(FindOtherLines);
 HWY_EXPORT(SumRuns);
 }  // namespace
 
 std::span<const PixelRun> PixelRuns::find(int columns, const RowEnds& ends,
                                           const NormalRow& normals) {
-  begins_.resize(static_cast<std::size_t>(columns + NormalRow::kPadding));
+  columns_.resize(static_cast<std::size_t>(columns + NormalRow::kPadding));
   runs_.resize(static_cast<std::size_t>(columns));
-  const std::size_t size = HWY_DYNAMIC_DISPATCH(FindBegins)(columns, ends, begins_.data());
-  begins_[size] = columns;
+  const std::size_t size = HWY_DYNAMIC_DISPATCH(FindBegins)(columns, ends, columns_.data());
+  columns_[size] = columns;
   for (std::size_t n = 0; n < size; ++n) {
-    runs_[n].begin = begins_[n];
-    runs_[n].end = begins_[n + 1];
+    runs_[n].begin = columns_[n];
+    runs_[n].end = columns_[n + 1];
   }
   const std::span<PixelRun> runs(runs_.data(), size);
   HWY_DYNAMIC_DISPATCH(SumRuns)(normals, runs);
   return runs;
+}
+
+std::span<const std::int32_t> PixelRuns::find_other_lines(int columns, const RowEnds& ends,
+                                                          const RowEnds& above) {
+  columns_.resize(static_cast<std::size_t>(columns + NormalRow::kPadding));
+  const std::size_t size =
+      HWY_DYNAMIC_DISPATCH(FindOtherLines)(columns, ends, above, columns_.data());
+  return {columns_.data(), size};
 }
 
 }  // namespace nextview

@@ -21,7 +21,8 @@ struct PixelRun {
 /// NormalRow::kPadding beyond the last.
 struct RowEnds {
   const std::int32_t* voxel[3];
-  const std::int32_t* kind;  ///< pixels of different kinds share no run
+  const std::int32_t* kind;   ///< pixels of different kinds share no run
+  const std::int32_t* limit;  ///< where they leave the window; no matter to runs
 };
 
 /// The runs of a row, each as long as it can be, but none across a multiple of 65536 columns, so
@@ -31,10 +32,18 @@ class PixelRuns {
   /// @return the runs from left to right; valid until the next call
   std::span<const PixelRun> find(int columns, const RowEnds& ends, const NormalRow& normals);
 
-  std::size_t memory_bytes() const { return runs_.capacity() * sizeof(PixelRun); }
+  /// The columns whose ray ends or leaves the window elsewhere than the ray to the left and the ray
+  /// above do: all others have a line beyond their end that one of these two has.
+  /// @return from left to right; valid until the next call of either function
+  std::span<const std::int32_t> find_other_lines(int columns, const RowEnds& ends,
+                                                 const RowEnds& above);
+
+  std::size_t memory_bytes() const {
+    return runs_.capacity() * sizeof(PixelRun) + columns_.capacity() * sizeof(std::int32_t);
+  }
 
  private:
-  std::vector<std::int32_t> begins_;
+  std::vector<std::int32_t> columns_;
   std::vector<PixelRun> runs_;
 };
 

@@ -26,6 +26,13 @@ struct RayEnd {
   SurfaceVoxel seen;  ///< of the points sensed in it by this image: normal sums, best quality
 };
 
+/// What rays hide: a line from the voxel of a point to the voxel where the point's ray leaves the
+/// window (limit_of_ray). Rays that share both share the line.
+struct Shadow {
+  std::uint32_t end;  ///< a number among RayEnds::ends(), of a surface
+  VoxelIndex limit;
+};
+
 /// How the pixels of a range image divide.
 struct PixelCounts {
   std::int64_t points = 0;          ///< a point inside the window
@@ -43,30 +50,39 @@ class RayEnds {
 
   /// The distinct ends, in the order of the first pixel that has each.
   std::span<const RayEnd> ends() const { return ends_; }
+  /// The distinct lines beyond the surfaces, in the order of the first pixel that has each.
+  std::span<const Shadow> shadows() const { return shadows_; }
   const PixelCounts& counts() const { return counts_; }
   std::size_t memory_bytes() const;
 
  private:
-  /// Of a row of pixels, from column -1 on: where each ray ends, and why there.
+  /// Of a row of pixels, from column -1 on: where each ray ends, why there, and where it leaves the
+  /// window, as a number among the window's voxels, x fastest.
   struct Row {
+    void resize(std::size_t columns);
+    RowEnds ends() const;
     std::array<std::vector<std::int32_t>, 3> end;
     std::vector<std::int32_t> kind;  ///< RangeKind
+    std::vector<std::int32_t> limit;
   };
 
-  void find_ends(const RangeImage& image, const VoxelGrid& grid, int v);
+  void find_ends(const RangeImage& image, const VoxelGrid& grid, const MapWindow& window, int v);
   void add_run(const PixelRun& run, const MapWindow& window);
   RayEnd& end_of(const PixelRun& run, const VoxelIndex& voxel, bool is_surface);
   std::uint32_t number_of(const VoxelIndex& voxel, bool is_surface);
+  void add_shadow(std::int32_t column, const MapWindow& window);
 
   VoxelIndex sensor_;
   NormalEstimator normals_;
   NormalRow normal_row_;
-  Row row_;
+  Row row_, row_above_;
   PixelRuns runs_;
   std::vector<RayEnd> ends_;
   /// By column, a number in ends_ that the pixel above, or here, is likely to end at.
   std::vector<std::uint32_t> end_above_, end_here_;
   KeyNumbers numbers_;  ///< of ends_
+  std::vector<Shadow> shadows_;
+  KeyNumbers shadow_numbers_;  ///< of shadows_
   PixelCounts counts_;
 };
 

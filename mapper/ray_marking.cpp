@@ -56,7 +56,7 @@ struct EndLine {
 }  // namespace
 
 std::int64_t mark_rays(VoxelMap& map, const VoxelIndex& sensor, std::span<const RayEnd> ends,
-                       std::vector<std::uint32_t>& changed_slots) {
+                       std::span<const Shadow> shadows, std::vector<std::uint32_t>& changed_slots) {
   const std::size_t before = changed_slots.size();
   Marker marker(map, changed_slots);
   std::vector<EndLine> lines;
@@ -79,10 +79,9 @@ std::int64_t mark_rays(VoxelMap& map, const VoxelIndex& sensor, std::span<const 
     marker.raise(end.line, 0, last_free, Label::Empty, Label::Empty);
   }
   marker.finish(Label::Empty, Label::Empty);
-  for (const EndLine& end : lines) {
-    // A line without steps has no direction to be carried on in.
-    if (!end.is_surface || end.line.steps == 0) continue;
-    marker.raise(end.line, end.line.steps + 1, end.inside, Label::Occluded, kFreshlyOccluded);
+  for (const Shadow& shadow : shadows) {
+    const IntegerLine line = line_between(ends[shadow.end].voxel, shadow.limit);
+    marker.raise(line, 1, line.steps, Label::Occluded, kFreshlyOccluded);
   }
   marker.finish(Label::Occluded, kFreshlyOccluded);
   return newly_occupied;

@@ -8,21 +8,21 @@
 #include "mapper/image_check.h"
 #include "mapper/integer_line.h"
 #include "mapper/ray_ends.h"
+#include "mapper/window_limit.h"
 
 namespace nextview {
 
 namespace {
 
-// The point at a distance along the ray of a pixel (eq. 1), its products written out in one order.
-Eigen::Vector3d point_along(const RangeImage& image, int u, int v, double distance_m) {
+// The direction of a pixel's ray in the world frame (eq. 1), its products written out in one order.
+Eigen::Vector3d direction_of(const RangeImage& image, int u, int v) {
   const Eigen::Vector3d n = image.rays.ray(u, v);
   const Eigen::Matrix3d& r = image.world_from_sensor;
-  Eigen::Vector3d point;
+  Eigen::Vector3d direction;
   for (int axis = 0; axis < 3; ++axis) {
-    const double direction = r(axis, 0) * n[0] + r(axis, 1) * n[1] + r(axis, 2) * n[2];
-    point[axis] = image.position_m[axis] + distance_m * direction;
+    direction[axis] = r(axis, 0) * n[0] + r(axis, 1) * n[1] + r(axis, 2) * n[2];
   }
-  return point;
+  return direction;
 }
 
 }  // namespace
@@ -52,10 +52,13 @@ void ReferenceMapUpdate::fold(const RangeImage& image) {
       const double followed_m =
           kind == RangeKind::NoReturn ? image.limits.max_m : image.range_m[pixel];
       const double distance_m = std::min(followed_m, farthest_m);
-      const VoxelIndex end = grid_.voxel_of(point_along(image, u, v, distance_m));
+      const Eigen::Vector3d direction = direction_of(image, u, v);
+      const VoxelIndex end = grid_.voxel_of(image.position_m + distance_m * direction);
       const bool is_surface = kind == RangeKind::Point && window_.contains(end);
-      trace(sensor, end, is_surface);
+      mark_free(sensor, end);
       if (!is_surface) continue;
+      mark_hidden(end, limit_of_ray(grid_, window_, image.position_m, direction));
+      labels_[place(end)] = Label::Occupied;
       const PointNormal normal = reference_normal(image, u, v);
       SurfaceVoxel& voxel = surfaces_[place(end)];
       if (normal.x == 0 && normal.y == 0 && normal.z == 0) continue;
@@ -80,19 +83,19 @@ void ReferenceMapUpdate::move_window(const VoxelIndex& new_min) {
   label_occlusion_planes();
 }
 
-void ReferenceMapUpdate::trace(const VoxelIndex& sensor, const VoxelIndex& end, bool is_surface) {
+void ReferenceMapUpdate::mark_free(const VoxelIndex& sensor, const VoxelIndex& end) {
   const IntegerLine line = line_between(sensor, end);
-  for (int k = 0; window_.contains(line.at(k)); ++k) {
+  for (int k = 0; k <= line.steps && window_.contains(line.at(k)); ++k) {
     Label& label = labels_[place(line.at(k))];
-    if (is_surface && k == line.steps) {
-      label = Label::Occupied;
-    } else if (k <= line.steps) {
-      if (label != Label::Occupied) label = Label::Empty;
-    } else {
-      if (!is_surface) break;
-      if (label == Label::Unmarked) label = Label::Occluded;
-    }
-    if (line.steps == 0) break;  // no direction to go on in
+    if (label != Label::Occupied) label = Label::Empty;
+  }
+}
+
+void ReferenceMapUpdate::mark_hidden(const VoxelIndex& point, const VoxelIndex& limit) {
+  const IntegerLine line = line_between(point, limit);
+  for (int k = 1; k <= line.steps; ++k) {
+    Label& label = labels_[place(line.at(k))];
+    if (label == Label::Unmarked) label = Label::Occluded;
   }
 }
 

@@ -32,7 +32,8 @@ class ReferenceMapUpdate {
 
  private:
   std::size_t place(const VoxelIndex& voxel) const;
-  void trace(const VoxelIndex& sensor, const VoxelIndex& end, bool is_surface);
+  void mark_free(const VoxelIndex& sensor, const VoxelIndex& end);
+  void mark_hidden(const VoxelIndex& point, const VoxelIndex& limit);
   void label_occlusion_planes();
   int empty_neighbours(const VoxelIndex& voxel) const;
 

@@ -148,10 +148,27 @@ TEST(MapBuilder, PointOutsideTheWindowFreesTheWayToIt) {
   EXPECT_EQ(along_y(builder.map(), 0, 0), "uEEEEEEE");
 }
 
-TEST(MapBuilder, PointInTheSensorsOwnVoxelHidesNothing) {
+TEST(MapBuilder, PointInTheSensorsOwnVoxelHidesWhatLiesBeyond) {
   MapBuilder builder(metre_grid(), {{-1, -1, -1}, {3, 8, 3}});
   builder.fold(looking_along_y({0.0f, 0.3f, 0.4f, 0.1f}));
-  EXPECT_EQ(along_y(builder.map(), 0, 0), "uOuuuuuu");
+  EXPECT_EQ(along_y(builder.map(), 0, 0), "uO######");
+}
+
+// Two rays that end in one voxel and part behind it. Seen from (0, 0, 0) the point lies at (0, 2);
+// straight on, the ray leaves through y = 6 at x = 0; turned by atan(1/5) to the right, through y
+// = 6.5 at x = 1.3. The line from (0, 2) to (1, 6): x = 0 for one step and 1 from the half on.
+TEST(MapBuilder, RaysThatMeetInAVoxelHideALineEach) {
+  RangeImage image = looking_along_y({2.0f, 2.0f, 2.0f, 2.0f});
+  const double length = std::sqrt(26.0);
+  image.rays.column_sin = {0.0, -1.0 / length};
+  image.rays.column_cos = {1.0, 5.0 / length};
+  MapBuilder builder(metre_grid(), {{-1, -1, -1}, {3, 8, 3}});
+  EXPECT_EQ(builder.fold(image).points, 4);
+  EXPECT_EQ(along_y(builder.map(), 0, 0), "uEEO####");
+  EXPECT_EQ(along_y(builder.map(), 1, 0), "uuuuu###");
+  EXPECT_EQ(along_y(builder.map(), -1, 0), "uuuuuuuu");
+  EXPECT_EQ(builder.statistics().voxels,
+            (std::array<std::int64_t, kLabelCount>{72 - 10, 7, 0, 2, 1}));
 }
 
 TEST(MapBuilder, HitsBeatMissesWithinAnImage) {

@@ -36,23 +36,28 @@ struct RandomRow {
     }
   }
   RowEnds ends() const {
-    return {{parts[0].data() + 1, parts[1].data() + 1, parts[2].data() + 1}, parts[3].data() + 1};
+    return {{parts[0].data() + 1, parts[1].data() + 1, parts[2].data() + 1},
+            parts[3].data() + 1,
+            parts[4].data() + 1};
   }
-  bool same(int u, int other) const {
-    return std::all_of(parts.begin(), parts.end(), [&](const Column& part) {
-      return part[static_cast<std::size_t>(u + 1)] == part[static_cast<std::size_t>(other + 1)];
-    });
+  // In the first so many parts.
+  bool same(int u, const RandomRow& other, int other_u, std::size_t count) const {
+    for (std::size_t n = 0; n < count; ++n) {
+      const auto i = static_cast<std::size_t>(u + 1), j = static_cast<std::size_t>(other_u + 1);
+      if (parts[n][i] != other.parts[n][j]) return false;
+    }
+    return true;
   }
 
   int columns;
-  std::array<Column, 4> parts;  // voxel and kind, from column -1 on
+  std::array<Column, 5> parts;  // voxel, kind and limit, from column -1 on
   NormalRow normals;
 };
 
 std::vector<PixelRun> plain_runs(const RandomRow& row) {
   std::vector<PixelRun> runs;
   for (int u = 0; u < row.columns; ++u) {
-    if (u % 65536 == 0 || !row.same(u, u - 1)) runs.push_back({u, u, {0, 0, 0, 0}, 0});
+    if (u % 65536 == 0 || !row.same(u, row, u - 1, 4)) runs.push_back({u, u, {0, 0, 0, 0}, 0});
     PixelRun& run = runs.back();
     const auto i = static_cast<std::size_t>(u);
     ++run.end;
@@ -106,6 +111,36 @@ TEST(PixelRuns, EqualAPlainLoopOverThePixels) {
   });
   EXPECT_GT(runs, 10'000u);
   std::cout << runs << " runs\n";
+}
+
+TEST(PixelRuns, OtherLinesAreThoseNeitherToTheLeftNorAbove) {
+  std::size_t others = 0, same = 0;
+  on_every_instruction_set([&] {
+    PixelRuns pixel_runs;
+    for (int n = 0; n < 500; ++n) {
+      SCOPED_TRACE("case " + std::to_string(n));
+      RandomStream random(n, 1, 2, RandomPurpose::RangeNoise);
+      const int columns = uniform_int(random, 2, 200);
+      const RandomRow above(columns, random);
+      RandomRow row = above;
+      for (Column& part : row.parts) {
+        for (std::int32_t& value : part) {
+          if (random.below(8) == 0) value = uniform_int(random, -2, 2);
+        }
+      }
+      std::vector<std::int32_t> expected;
+      for (int u = 0; u < columns; ++u) {
+        const bool as_left = u > 0 && row.same(u, row, u - 1, 5);
+        if (!as_left && !row.same(u, above, u, 5)) expected.push_back(u);
+      }
+      const auto found = pixel_runs.find_other_lines(columns, row.ends(), above.ends());
+      ASSERT_TRUE(std::ranges::equal(found, expected));
+      others += expected.size();
+      same += static_cast<std::size_t>(columns) - expected.size();
+    }
+  });
+  EXPECT_GT(others, 10'000u);
+  EXPECT_GT(same, 10'000u);
 }
 
 // The largest sums of the longest runs still fit.
