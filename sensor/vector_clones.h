@@ -4,7 +4,8 @@
 /// program starts. Its loops are plain loops over arrays that compilers turn into vector code
 /// (#pragma omp simd). All versions give the same bits: every operation in them is one that IEEE
 /// 754 rounds one way, and none is fused (-ffp-contract=off). A test that compiles for one
-/// instruction set alone defines what to put before functions (tests/system/vector_clones_test.cpp).
+/// instruction set alone defines what to put before functions
+/// (tests/system/vector_clones_test.cpp).
 #if defined(NEXTVIEW_VECTOR_CLONES)
 #elif defined(__x86_64__) && defined(__linux__)
 #define NEXTVIEW_VECTOR_CLONES __attribute__((target_clones("avx512f", "avx2", "default")))

@@ -44,7 +44,7 @@ TEST(Fixtures, AreReplayedToTheirDigests) {
     expect_replayed_to_its_digests(entry.path());
     ++logs;
   }
-  if (logs == 0) GTEST_SKIP() << kFolder << " holds no log yet";
+  EXPECT_GE(logs, 2);
 }
 
 }  // namespace
