@@ -32,6 +32,10 @@ struct RangeLimits {
 ///
 /// Pixel (u, v) is column u of N from the left and row v of M from the top; its index in a range
 /// image is v * N + u.
+///
+/// All rays start at one point, the optical centre. The map update rests on it: the voxel line from
+/// the sensor depends on nothing but the voxel it ends in, so pixels share it. A sensor whose rays
+/// do not share an origin does not fit.
 struct RayTable {
   std::vector<double> column_sin;  ///< sin(alpha_u), size N
   std::vector<double> column_cos;  ///< cos(alpha_u), size N
