@@ -73,9 +73,8 @@ TEST(WholeRun, CoversMoreWithEveryView) {
 TEST(WholeRun, EndsByItsStopRule) {
   const TemporaryFolder folder;
   // More than 89 m2 of new surface cannot come, so the rule holds as soon as it is asked.
-  const Outcome outcome =
-      run_views(folder / "run", 50,
-                {"--strategy", "paper", "--stop-window", "4", "--stop-new-area", "1000"});
+  const Outcome outcome = run_views(
+      folder / "run", 50, {"--strategy", "paper", "--stop-window", "4", "--stop-new-area", "1000"});
   ASSERT_EQ(outcome.status, 0) << outcome.output;
   const nlohmann::json summary = summary_of(folder / "run");
   EXPECT_EQ(summary.at("stop_reason"), "nothing_new");
