@@ -239,9 +239,10 @@ class Replay {
       stop.detail = describe_refusals(views + 1, attempts_after_, last->refusal);
       return stop;
     }
-    if (attempts_after_ > 0 && !options_.planner) {  // only a decision could tell
+    // Before the limit of views a strategy comes to such an end by what it has decided so far.
+    if (!options_.planner && record_.ends_by_search()) return stop;
+    if (attempts_after_ > 0 && !options_.planner) {
       stop.stop_reason = to_string(StopReason::NoFeasibleGoal);
-      stop.final_attempt = attempts_after_ + 1;
       return stop;
     }
     if (attempts_after_ > 0 && std::holds_alternative<Decision>(planner_->next_view())) {

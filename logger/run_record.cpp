@@ -130,6 +130,11 @@ bool RunRecord::ends_early() const {
                      [this](StopReason reason) { return to_string(reason) == stop_->stop_reason; });
 }
 
+bool RunRecord::ends_by_search() const {
+  return stop_ && stop_->views < config_->planner.max_views &&
+         (stop_->stop_reason == to_string(StopReason::NothingLeft) || ends_without_goal());
+}
+
 void RunRecord::add_missing_attempt(int view, int attempt,
                                     std::vector<MissingMessage>& missing) const {
   const bool has_search = view > 1;  // view 1 is the scan at the start, nothing was searched for

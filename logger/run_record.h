@@ -70,6 +70,8 @@ class RunRecord {
   /// Whether the run was ended while the planner would have gone on: no end, or one of those that
   /// the run publishes itself.
   bool ends_early() const;
+  /// Whether the planner has ended because a search of its, and not a count of views, says so.
+  bool ends_by_search() const;
 
   /// What a committed view needs and is not there: its commit, else for each attempt its goal,
   /// search and arrival, and the range image.

@@ -57,6 +57,9 @@ std::vector<UncheckedFields> unchecked_fields(const RunRecord& run, bool planner
   }
   if (!planner) {
     constexpr std::string_view kDecided = "decided again with --planner only";
+    if (run.ends_by_search()) {
+      unchecked.push_back({kDecided, kStop, {"stop_reason", "final_attempt", "detail"}});
+    }
     unchecked.push_back({"of a goal that was refused, decided again with --planner only",
                          kGoal,
                          {"pan_rad", "tilt_rad"}});

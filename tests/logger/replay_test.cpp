@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "logger/unchecked_fields.h"
 #include "tests/logger/recorded_run.h"
 
 namespace nextview {
@@ -212,6 +213,28 @@ TEST(Replay, FindsAnEndForAReasonThatDoesNotHold) {
       EXPECT_NE(replayed(log, planner).exit_status(), 0) << reason;
     }
   }
+}
+
+TEST(Replay, SaysThatOnlyThePlannerCanTellWhetherNothingIsLeft) {
+  Recording log = without<goal_t>(recorded(), [](const goal_t& goal) { return goal.view > 3; });
+  log = without<search_t>(log, [](const search_t& search) { return search.view > 3; });
+  log = without<arrival_t>(log, [](const arrival_t& arrival) { return arrival.view > 3; });
+  log = without<range_image_t>(log, [](const range_image_t& part) { return part.view > 3; });
+  std::int64_t utime = 0;
+  log = without<commit_t>(log, [&](const commit_t& commit) {
+    if (commit.view == 3) utime = commit.utime;
+    return commit.view > 3;
+  });
+  log = changed<stop_t>(log, [&](stop_t& stop) {
+    stop.utime = utime;
+    stop.views = 3;
+    stop.stop_reason = "nothing_left";
+  });
+  EXPECT_EQ(replayed(log, false).exit_status(), 0) << lines_of(replayed(log, false));
+  const RunLog read = log_of(log);
+  EXPECT_TRUE(is_unchecked(unchecked_fields(read.record(), false), "NEXTVIEW_STOP", "stop_reason"));
+  EXPECT_FALSE(is_unchecked(unchecked_fields(read.record(), true), "NEXTVIEW_STOP", "stop_reason"));
+  EXPECT_EQ(replayed(log, true).exit_status(), 1);
 }
 
 TEST(Replay, TakesTheFirstOfTwoEnds) {
