@@ -71,8 +71,7 @@ void GrownSurface::update(const VoxelMap& map, std::span<const std::uint32_t> ch
   });
   grow(map, min, end);
   std::ranges::sort(changed_);
-  const auto rest = std::ranges::unique(changed_);
-  changed_.erase(rest.begin(), rest.end());
+  changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
   field_.update(expected_, changed_);
 }
 

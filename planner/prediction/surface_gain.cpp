@@ -170,8 +170,7 @@ std::vector<std::uint32_t> SurfaceGain::aimed_at(const Known& known,
     }
   });
   std::ranges::sort(offsets);
-  const auto rest = std::ranges::unique(offsets);
-  offsets.erase(rest.begin(), rest.end());
+  offsets.erase(std::unique(offsets.begin(), offsets.end()), offsets.end());
   return offsets;
 }
 

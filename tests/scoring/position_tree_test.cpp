@@ -119,7 +119,7 @@ TEST(PositionSearch, AgreesWithThePlainTwinOnRandomRooms) {
 TriangleMesh house_on_a_raster(RandomStream& random) {
   TriangleMesh mesh = room({8.0, 5.0, 2.5});
   const auto raster = [&](int least, int most) {
-    return 0.1 * (least + static_cast<int>(random.below(static_cast<std::uint64_t>(most - least))));
+    return 0.1 * (least + static_cast<int>(random.below(static_cast<std::uint32_t>(most - least))));
   };
   const double wall = raster(35, 45);
   for (double y = 0.0; y < 4.95; y += 0.5) {
