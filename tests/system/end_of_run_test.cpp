@@ -6,6 +6,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
+#include <set>
 #include <sstream>
 
 #include "lcmtypes/bus.h"
@@ -31,8 +32,12 @@ class LongRun : public testing::Test {
   }
 
   void expect_readable_log(const std::string& stop_reason) {
+    expect_log_replays_with({0}, stop_reason);
+  }
+
+  void expect_log_replays_with(const std::set<int>& statuses, const std::string& stop_reason) {
     const Outcome replay = replay_folder(folder_ / "run");
-    EXPECT_EQ(replay.status, 0) << replay.output;
+    EXPECT_TRUE(statuses.contains(replay.status)) << replay.status << "\n" << replay.output;
     EXPECT_NE(replay.output.find(stop_reason), std::string::npos) << replay.output;
     EXPECT_GE(views_in(replay.output, std::regex("(\\d+) views replayed")),
               views_in(run_->output(), std::regex("view +(\\d+)/")))
@@ -127,7 +132,9 @@ TEST_F(LongRun, SaysWhomItWaitsFor) {
     EXPECT_EQ(run_->wait(), 5) << run_->output();
     EXPECT_NE(run_->output().find(silent.words), std::string::npos) << run_->output();
     expect_nothing_left();
-    expect_readable_log("no_answer");
+    // What the recorder has missed nobody but the halted process could publish again: then the
+    // replay agrees with what is there, and says what is missing.
+    expect_log_replays_with({0, 3}, "no_answer");
     std::filesystem::remove_all(folder_ / "run");
   }
 }
