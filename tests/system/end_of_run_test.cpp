@@ -103,7 +103,9 @@ TEST_F(LongRun, SaysWhichProcessDied) {
     EXPECT_NE(run_->output().find(role + " was killed by signal 9"), std::string::npos)
         << run_->output();
     expect_nothing_left();
-    expect_readable_log("process_died");
+    // A planner killed between a goal and its search never publishes the search, and what the
+    // recorder has missed of a dead process is gone: the replay then says what is missing.
+    expect_log_replays_with({0, 3}, "process_died");
     std::filesystem::remove_all(folder_ / "run");
   }
 }
