@@ -4,15 +4,18 @@
 #include <gtest/gtest.h>
 #include <netinet/in.h>
 #include <sys/socket.h>
+#include <unistd.h>
 
-#include <optional>
+#include <string>
 
 namespace nextview {
 namespace {
 
-// A range of its own, so that runs on this machine do not matter.
-constexpr int kFirst = 7950;
-constexpr int kLast = 7952;
+// A range of this process alone, outside that of runs and of the system's own choice (from 32768):
+// the tests of this file run side by side, each in a process of its own, and so may two checkouts'
+// tests.
+const int kFirst = 10000 + 3 * (::getpid() % 7000);
+const int kLast = kFirst + 2;
 
 FileDescriptor bound_udp_socket(int port) {
   FileDescriptor socket(::socket(AF_INET, SOCK_DGRAM, 0));
@@ -50,16 +53,18 @@ TEST(PortLock, SaysSoWhenNoneIsFree) {
     PortLock::acquire(kFirst, kFirst);
     FAIL() << "the port was given away twice";
   } catch (const NoFreePort& error) {
-    EXPECT_NE(std::string(error.what()).find("no free UDP port from 7950 to 7950"),
+    const std::string port = std::to_string(kFirst);
+    EXPECT_NE(std::string(error.what()).find("no free UDP port from " + port + " to " + port),
               std::string::npos);
     EXPECT_NE(std::string(error.what()).find("--lcm-url"), std::string::npos);
   }
 }
 
 TEST(PortLock, NamesItsUrl) {
-  EXPECT_TRUE(PortLock::acquire(kFirst, kLast)
-                  .lcm_url()
-                  .starts_with("udpm://239.255.76.67:7950?ttl=0&recv_buf_size="));
+  EXPECT_TRUE(
+      PortLock::acquire(kFirst, kLast)
+          .lcm_url()
+          .starts_with("udpm://239.255.76.67:" + std::to_string(kFirst) + "?ttl=0&recv_buf_size="));
 }
 
 }  // namespace
