@@ -85,6 +85,7 @@ int main(int argc, char** argv) {
   app.add_flag("--planner", options.planner,
                "Decide every goal again, too, and compare pose, path, fitness and search exactly");
   app.add_option("--run", run, "The run to replay, when the log holds several");
+  app.set_version_flag("--version", "nextview_replay " + std::string(nextview::program_version()));
   app.footer(
       "Exit status: 0 when all of it agrees; 1 when something differs, or the log cannot be read;\n"
       "3 when what is there agrees and something is missing. A line names each message that\n"

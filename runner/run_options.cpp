@@ -1,6 +1,7 @@
 #include "runner/run_options.h"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <numbers>
 
 #include "lcmtypes/parameter_bounds.h"
@@ -290,6 +291,14 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
       ->group(group);
 }
 
+/// Of an installation, beside its bin; else of the sources.
+std::string scenes_folder() {
+  namespace fs = std::filesystem;
+  const fs::path bin = fs::read_symlink("/proc/self/exe").parent_path();
+  const fs::path installed = bin.parent_path() / NEXTVIEW_DATA_FOLDER / "scenes";
+  return fs::is_directory(installed) ? installed.string() : NEXTVIEW_SCENES_FOLDER;
+}
+
 }  // namespace
 
 const char* const kRunDescription =
@@ -301,7 +310,7 @@ const char* const kRunDescription =
 std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_status,
                                             const std::string& description) {
   RunOptions options;
-  options.scenes_folder = NEXTVIEW_SCENES_FOLDER;
+  options.scenes_folder = scenes_folder();
   CLI::App app{description};
   app.footer(
       "Examples:\n"
@@ -315,7 +324,8 @@ std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_sta
       "start; 3 no feasible goal; 4 mapper and planner hold different maps; 5 somebody did not\n"
       "answer; 6 a process died; 7 the bus broke down; 130, 143 or 129 ended by SIGINT, SIGTERM\n"
       "or SIGHUP, the log being readable; above 100 otherwise: a wrong command line.");
-  app.set_version_flag("--version", "nextview_run " + std::string(program_version()));
+  const std::string program = std::filesystem::path(argv[0]).filename();
+  app.set_version_flag("--version", program + " " + std::string(program_version()));
   app.get_formatter()->column_width(30);
   add_scene_options(app, options);
   add_run_options(app, options);
