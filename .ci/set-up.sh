@@ -52,7 +52,7 @@ configure() {
   if [ -e "$build/build.ninja" ] && [ "$(cat "$done_with" 2> /dev/null)" = "${options[*]}" ]; then
     return
   fi
-  (cd "$root" && cmake --preset release "${options[@]}" > "$install_log" 2>&1) || {
+  (cd "$root" && cmake --preset release -B "$build" "${options[@]}" > "$install_log" 2>&1) || {
     cat "$install_log" >&2
     fail "cmake failed"
   }
@@ -74,4 +74,20 @@ set_up_programs() {
   # A folder configured for the tests will do as well.
   [ -e "$build/build.ninja" ] || configure -DNEXTVIEW_TESTS=OFF
   build_target programs
+}
+
+# set_up_java: what LCM's own windows need to decode our types.
+set_up_java() {
+  install_missing packages-to-run packages-to-spy
+  [ -e "$build/build.ninja" ] || configure -DNEXTVIEW_TESTS=OFF
+  # A folder that was configured before Java was there.
+  grep -q nextview_types.jar "$build/build.ninja" || cmake "$build" > "$install_log" 2>&1 ||
+    fail "$(cat "$install_log")"
+  build_target lcm_spy_types
+}
+
+# start_java CLASS [ARGUMENT...]: a window of LCM. Debian's own scripts ask Java for an option it no longer has.
+start_java() {
+  CLASSPATH="$build/nextview_types.jar" exec java -Djava.net.preferIPv4Stack=true -ea \
+    -cp "/usr/share/java/lcm.jar:/usr/share/java/jchart2d.jar:$build/nextview_types.jar" "$@"
 }
