@@ -1,9 +1,10 @@
 #include "base_sim/base.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 #include <stdexcept>
 
@@ -20,17 +21,10 @@ constexpr double kMaxTilt_rad = std::numbers::pi / 2.0 + 1e-9;
 // Less than a broom cupboard: nothing a robot could leave.
 constexpr double kSmallestRoom_m3 = 2.0;
 
-std::string metres(double value) {
-  std::array<char, 32> text{};
-  std::snprintf(text.data(), text.size(), "%.3f", value);
-  return text.data();
-}
+std::string metres(double value) { return fmt::format("{:.3f}", value); }
 
 std::string place(const Eigen::Vector3d& position_m) {
-  std::array<char, 128> text{};
-  std::snprintf(text.data(), text.size(), "(%.3f, %.3f, %.3f)", position_m.x(), position_m.y(),
-                position_m.z());
-  return text.data();
+  return fmt::format("({:.3f}, {:.3f}, {:.3f})", position_m.x(), position_m.y(), position_m.z());
 }
 
 // By how much a value lies outside [low, high]; 0 inside.

@@ -1,9 +1,9 @@
 #include "bench/conditions.h"
 
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 #include <tbb/version.h>
 
-#include <cstdio>
 #include <cstdlib>
 #include <fstream>
 #include <iostream>
@@ -46,12 +46,10 @@ void report_conditions() {
 }
 
 void Agreement::report(const std::string& of_what, const std::string& remark) const {
-  char share[64];
-  std::snprintf(
-      share, sizeof share, "%.4f %%",
-      compared_ == 0 ? 0.0 : 100.0 * static_cast<double>(differ_) / static_cast<double>(compared_));
-  report_condition("differ " + pair_, std::string(share) + " of " + std::to_string(compared_) +
-                                          " " + of_what + (remark.empty() ? "" : "; " + remark));
+  const double percent =
+      compared_ == 0 ? 0.0 : 100.0 * static_cast<double>(differ_) / static_cast<double>(compared_);
+  report_condition("differ " + pair_, fmt::format("{:.4f} % of {} {}{}{}", percent, compared_,
+                                                  of_what, remark.empty() ? "" : "; ", remark));
 }
 
 void Agreement::report_and_require_none(const std::string& of_what) const {

@@ -2,6 +2,8 @@
 //
 // nextview_bench_scale SCENE VOXEL_SIZE_M VIEWS
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -47,11 +49,12 @@ void print_row(const Row& row, Exploration& exploration, double voxel_size_m) {
   const double map_bytes = static_cast<double>(exploration.builder().memory_bytes());
   const double field_bytes =
       static_cast<double>(FreeSpaceField(exploration.builder().map()).memory_bytes());
-  std::printf("%6d %9.1f %8.2f %8.2f %8.2f %9.2f %9.2f %6.0f %8.1f %8.1f %8.2f\n",
-              exploration.views(), seen_m3(exploration), median(row.fold_ms), median(row.digest_ms),
-              median(row.field_ms), median(row.decision_ms), worst(row.decision_ms),
-              median(row.evaluations), map_bytes / 1e6, field_bytes / 1e6,
-              (map_bytes + field_bytes) / seen);
+  fmt::print(
+      "{:6} {:9.1f} {:8.2f} {:8.2f} {:8.2f} {:9.2f} {:9.2f} {:6.0f} {:8.1f} {:8.1f} {:8.2f}\n",
+      exploration.views(), seen_m3(exploration), median(row.fold_ms), median(row.digest_ms),
+      median(row.field_ms), median(row.decision_ms), worst(row.decision_ms),
+      median(row.evaluations), map_bytes / 1e6, field_bytes / 1e6,
+      (map_bytes + field_bytes) / seen);
   std::fflush(stdout);
 }
 
@@ -63,11 +66,12 @@ int explore(const std::string& name, double voxel_size_m, int views) {
   parameters.planner.step_max_m = 3.0;  // larger strides: the point is to see much
   Exploration exploration(scene, parameters);
   const VoxelIndex size = exploration.builder().map().window().size;
-  std::printf("\n%s, %s voxels, window %d x %d x %d, sensor %d x %d, quality off\n", name.c_str(),
-              size_name(voxel_size_m).c_str(), size[0], size[1], size[2], parameters.sensor.columns,
-              parameters.sensor.rows);
-  std::printf("%6s %9s %8s %8s %8s %9s %9s %6s %8s %8s %8s\n", "view", "seen m3", "fold ms",
-              "digest", "field", "decision", "worst", "tried", "map MB", "field MB", "B/voxel");
+  fmt::print("\n{}, {} voxels, window {} x {} x {}, sensor {} x {}, quality off\n", name,
+             size_name(voxel_size_m), size[0], size[1], size[2], parameters.sensor.columns,
+             parameters.sensor.rows);
+  fmt::print("{:>6} {:>9} {:>8} {:>8} {:>8} {:>9} {:>9} {:>6} {:>8} {:>8} {:>8}\n", "view",
+             "seen m3", "fold ms", "digest", "field", "decision", "worst", "tried", "map MB",
+             "field MB", "B/voxel");
   Row row;
   constexpr int kPatience = 5;  // views that see next to nothing new before the sensor is carried
   int idle_views = 0;

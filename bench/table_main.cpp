@@ -1,9 +1,10 @@
 // Reads the JSON of nextview_bench and prints it for people: conditions, what differs, figures with
 // ratios, and where they stand against what was asked for.
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <iterator>
@@ -95,15 +96,15 @@ Figures read_figures(const Json& json, std::vector<std::string>& order,
 }
 
 void print_context(const Json& context) {
-  std::printf("Date %s, load %s\n", context.value("date", "?").c_str(),
-              context.contains("load_avg") ? context.at("load_avg").dump().c_str() : "?");
+  fmt::print("Date {}, load {}\n", context.value("date", "?"),
+             context.contains("load_avg") ? context.at("load_avg").dump() : "?");
   for (const std::string kind : {"condition ", "skipped ", "differ ", "fitness error "}) {
-    if (kind == "differ ") std::printf("\nAnswers that differ\n");
+    if (kind == "differ ") fmt::print("\nAnswers that differ\n");
     for (const auto& [key, value] : context.items()) {
       if (key.starts_with(kind)) {
-        std::printf("  %s: %s\n",
-                    key.substr(kind == "condition " || kind == "differ " ? kind.size() : 0).c_str(),
-                    value.get<std::string>().c_str());
+        fmt::print("  {}: {}\n",
+                   key.substr(kind == "condition " || kind == "differ " ? kind.size() : 0),
+                   value.get<std::string>());
       }
     }
   }
@@ -123,13 +124,8 @@ Place place_of(const std::string& name) {
 }
 
 std::string rate_text(double items_per_second) {
-  char text[32];
-  if (items_per_second >= 1e5) {
-    std::snprintf(text, sizeof text, "%.2f M/s", items_per_second * 1e-6);
-  } else {
-    std::snprintf(text, sizeof text, "%.1f /s", items_per_second);
-  }
-  return text;
+  return items_per_second >= 1e5 ? fmt::format("{:.2f} M/s", items_per_second * 1e-6)
+                                 : fmt::format("{:.1f} /s", items_per_second);
 }
 
 void print_tables(const Figures& figures, const std::vector<std::string>& order) {
@@ -149,19 +145,18 @@ void print_tables(const Figures& figures, const std::vector<std::string>& order)
               [&](const std::string& a, const std::string& b) {
                 return median(figures.at(a).time_ms) < median(figures.at(b).time_ms);
               });
-    std::printf("\n%s\n  %-34s %12s %14s %7s  %s\n", table.c_str(), "", "median", "a second", "+-",
-                "of nextview's time");
+    fmt::print("\n{}\n  {:<34} {:>12} {:>14} {:>7}  {}\n", table, "", "median", "a second", "+-",
+               "of nextview's time");
     for (const std::string& name : tables[table]) {
       const Figure& figure = figures.at(name);
       const double rate = median(figure.items_per_second);
-      std::printf("  %-34s %9.3f ms %14s %5.1f %%", place_of(name).what.c_str(),
-                  median(figure.time_ms), rate_text(rate).c_str(),
-                  100.0 * spread(figure.items_per_second));
-      if (ours_ms > 0.0) std::printf("  %8.2f x", median(figure.time_ms) / ours_ms);
+      fmt::print("  {:<34} {:9.3f} ms {:>14} {:5.1f} %", place_of(name).what,
+                 median(figure.time_ms), rate_text(rate), 100.0 * spread(figure.items_per_second));
+      if (ours_ms > 0.0) fmt::print("  {:8.2f} x", median(figure.time_ms) / ours_ms);
       for (const auto& [counter, values] : figure.counters) {
-        std::printf("  %s %.4g", counter.c_str(), median(values));
+        fmt::print("  {} {:.4g}", counter, median(values));
       }
-      std::printf("\n");
+      fmt::print("\n");
     }
   }
 }
@@ -191,14 +186,14 @@ class Goals {
  private:
   static void print(bool met, double value, const char* unit, const char* relation, double wanted,
                     const std::string& what) {
-    std::printf("  %-7s %9.2f %-2s  (%s %g)  %s\n", met ? "met" : "MISSED", value, unit, relation,
-                wanted, what.c_str());
+    fmt::print("  {:<7} {:9.2f} {:<2}  ({} {:g})  {}\n", met ? "met" : "MISSED", value, unit,
+               relation, wanted, what);
   }
   const Figures& figures_;
 };
 
 void print_goals(const Figures& figures) {
-  std::printf("\nAgainst what was asked for\n");
+  fmt::print("\nAgainst what was asked for\n");
   const Goals goals(figures);
   for (const std::string target : {"", "_on_AVX2"}) {
     const std::string ours = "view_evaluation/nextview" + target + "/5cm";
@@ -251,7 +246,7 @@ void print(const Json& json) {
   print_context(json.at("context"));
   print_tables(figures, order);
   print_goals(figures);
-  for (const std::string& line : failed) std::printf("\nNOT MEASURED: %s\n", line.c_str());
+  for (const std::string& line : failed) fmt::print("\nNOT MEASURED: {}\n", line);
 }
 
 }  // namespace

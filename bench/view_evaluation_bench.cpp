@@ -1,6 +1,7 @@
 // Whole fitness: the best of 20 directions at each of 60 positions, 64 x 30 rays a view.
 
 #include <benchmark/benchmark.h>
+#include <fmt/format.h>
 #include <hwy/targets.h>
 
 #include <algorithm>
@@ -174,13 +175,11 @@ void report_panorama_error(const RecoveredRoom& room, ViewPredictor& panorama,
     }
     best_loss = std::max(best_loss, best - fitness(exact[chosen], {}).value);
   }
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "mean %.4f, max %.4f over %zu views; the view chosen is at most %.4f worse",
-                sum / static_cast<double>(compared), largest, compared, best_loss);
   report_condition("fitness error view_evaluation/" + size_name(room.voxel_size_m()) +
                        " panorama, " + std::to_string(exact.size()) + " directions",
-                   text);
+                   fmt::format("mean {:.4f}, max {:.4f} over {} views; the view chosen is at most "
+                               "{:.4f} worse",
+                               sum / static_cast<double>(compared), largest, compared, best_loss));
 }
 
 // The same kernel on lesser instruction sets than this processor's best.

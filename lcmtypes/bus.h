@@ -47,7 +47,7 @@ class Bus {
   Bus(const Bus&) = delete;
   Bus& operator=(const Bus&) = delete;
 
-  std::int64_t run() const { return run_; }
+  std::int64_t run_number() const { return run_; }
   const std::string& role() const { return role_; }
   const BusCounters& counters() const { return counters_; }
 

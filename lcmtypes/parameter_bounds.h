@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -73,22 +72,5 @@ inline constexpr Bounds kLeastGain{"least_gain_m2", 0.0, 1e6};
 inline constexpr Bounds kStopNewArea{"stop_new_area_m2", 0.0, 1e6};
 
 }  // namespace bounds
-
-inline std::string Bounds::range() const {
-  const auto text = [](double value) {
-    char buffer[32];
-    std::snprintf(buffer, sizeof buffer, "%g", value);
-    return std::string(buffer);
-  };
-  if (most < bounds::kUnlimited) return "from " + text(least) + " to " + text(most);
-  return least > -bounds::kUnlimited ? "of " + text(least) + " or more" : "and finite";
-}
-
-inline std::string Bounds::refusal(double value) const {
-  if (contain(value)) return {};
-  char number[32];
-  std::snprintf(number, sizeof number, "%g", value);
-  return std::string(name) + " = " + number + " is not a number " + range();
-}
 
 }  // namespace nextview

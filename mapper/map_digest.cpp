@@ -1,5 +1,6 @@
 #include "mapper/map_digest.h"
 
+#include <fmt/format.h>
 #include <xxhash.h>
 
 #include <algorithm>
@@ -90,16 +91,6 @@ Hash canonical(const XXH128_hash_t& hash) {
   return std::to_array(bytes.digest);
 }
 
-std::string hex(const Hash& hash) {
-  static constexpr char kDigits[] = "0123456789abcdef";
-  std::string text;
-  for (const unsigned char byte : hash) {
-    text += kDigits[byte >> 4];
-    text += kDigits[byte & 15];
-  }
-  return text;
-}
-
 struct FreeState {
   void operator()(XXH3_state_t* state) const { XXH3_freeState(state); }
 };
@@ -130,7 +121,8 @@ std::string MapDigest::digest(const VoxelMap& map, const MapBlocks& blocks) {
       XXH3_128bits_update(state.get(), hashes_[block].data(), sizeof(Hash));
     }
   });
-  return hex(canonical(XXH3_128bits_digest(state.get())));
+  const XXH128_hash_t whole = XXH3_128bits_digest(state.get());
+  return fmt::format("{:016x}{:016x}", whole.high64, whole.low64);
 }
 
 std::size_t MapDigest::memory_bytes() const {

@@ -1,9 +1,9 @@
 #include "planner/surface_strategy.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 #include <utility>
 
@@ -253,14 +253,10 @@ Decision SurfaceStrategy::decision(const SurfaceGain::Known& known,
 std::string SurfaceStrategy::in_words(std::span<const CandidateView> best,
                                       std::size_t positions) const {
   const auto expects = [&](const CandidateView& candidate) {
-    std::array<char, 160> text{};
-    std::snprintf(text.data(), text.size(), "%.2f m2 of new surface, %.1f m away",
-                  area_m2(candidate.view.new_voxels), candidate.path_m);
-    std::string words = text.data();
+    std::string words = fmt::format("{:.2f} m2 of new surface, {:.1f} m away",
+                                    area_m2(candidate.view.new_voxels), candidate.path_m);
     if (candidate.view.improvement > 0.0) {
-      std::snprintf(text.data(), text.size(), ", and %.2f m2 seen better",
-                    area_m2(candidate.view.improvement));
-      words += text.data();
+      words += fmt::format(", and {:.2f} m2 seen better", area_m2(candidate.view.improvement));
     }
     return words;
   };
@@ -286,11 +282,10 @@ NextView SurfaceStrategy::nothing_left(const Situation& situation, std::size_t p
     return decision;
   }
   left_unseen_ = unseen_boundary(map, *clear_, paths_, range_max_m_);
-  std::array<char, 160> text{};
-  std::snprintf(text.data(), text.size(),
-                "From none of %zu positions is more than %.2f m2 of new surface expected; ",
-                positions, parameters_.least_new_area_m2);
-  return Ending{StopReason::NothingLeft, text.data() + describe(*left_unseen_)};
+  return Ending{
+      StopReason::NothingLeft,
+      fmt::format("From none of {} positions is more than {:.2f} m2 of new surface expected; {}",
+                  positions, parameters_.least_new_area_m2, describe(*left_unseen_))};
 }
 
 }  // namespace nextview

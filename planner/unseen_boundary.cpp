@@ -1,8 +1,9 @@
 #include "planner/unseen_boundary.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <array>
-#include <cstdio>
 #include <vector>
 
 #include "mapper/integer_line.h"
@@ -86,16 +87,11 @@ UnseenBoundary unseen_boundary(const VoxelMap& map, const ClearSpace& space,
 }
 
 std::string describe(const UnseenBoundary& boundary) {
-  const auto square_metres = [](double area_m2) {
-    std::array<char, 32> text{};
-    std::snprintf(text.data(), text.size(), "%.2f m2", area_m2);
-    return std::string(text.data());
-  };
-  std::string text = square_metres(boundary.total_m2()) + " of boundary left unseen";
+  std::string text = fmt::format("{:.2f} m2 of boundary left unseen", boundary.total_m2());
   const char* separator = ": ";
   const auto add = [&](double area_m2, const char* why) {
     if (area_m2 <= 0.0) return;
-    text += separator + square_metres(area_m2) + " " + why;
+    text += fmt::format("{}{:.2f} m2 {}", separator, area_m2, why);
     separator = ", ";
   };
   add(boundary.in_view_m2, "in view, where views show too little");

@@ -1,8 +1,9 @@
 #include "report/progress.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cstdio>
-#include <optional>
+#include <string>
 
 namespace nextview {
 namespace {
@@ -11,20 +12,15 @@ constexpr int kBarWidth = 30;
 
 std::string numbers_of(const ViewRow& row) {
   // Until it is known what can be seen at all, and with --no-coverage always.
-  char coverage[32] = "unknown";
-  if (row.surface_coverage) {
-    std::snprintf(coverage, sizeof coverage, "%.3f", *row.surface_coverage);
-  }
-  char decided[48] = "";
+  const std::string coverage =
+      row.surface_coverage ? fmt::format("{:.3f}", *row.surface_coverage) : "unknown";
+  std::string decided;
   if (!row.chosen()) {
-    std::snprintf(decided, sizeof decided, "start");
+    decided = "start";
   } else if (row.plan_s) {
-    std::snprintf(decided, sizeof decided, "decided in %.1f ms", 1e3 * *row.plan_s);
+    decided = fmt::format("decided in {:.1f} ms", 1e3 * *row.plan_s);
   }
-  char text[160];
-  std::snprintf(text, sizeof text, "coverage %s  quality %.3f  %s", coverage,
-                row.commit.mean_quality, decided);
-  return text;
+  return fmt::format("coverage {}  quality {:.3f}  {}", coverage, row.commit.mean_quality, decided);
 }
 
 }  // namespace
@@ -33,9 +29,7 @@ Progress::Progress(std::ostream& out, Style style, int max_views)
     : out_(out), style_(style), max_views_(max_views) {}
 
 void Progress::show(const ViewRow& row) {
-  char view[64];
-  std::snprintf(view, sizeof view, "view %3d/%d  ", row.view, max_views_);
-  const std::string line = view + numbers_of(row);
+  const std::string line = fmt::format("view {:3}/{}  {}", row.view, max_views_, numbers_of(row));
   if (style_ == Style::Lines) {
     out_ << line << std::endl;
     return;

@@ -1,7 +1,9 @@
 #include "report/run_report.h"
 
+#include <fmt/format.h>
+#include <fmt/ostream.h>
+
 #include <algorithm>
-#include <cstdio>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -11,14 +13,6 @@ namespace nextview {
 namespace {
 
 constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
-
-template <class... Values>
-std::string format(const char* pattern, Values... values) {
-  const int size = std::snprintf(nullptr, 0, pattern, values...);
-  std::string text(static_cast<std::size_t>(size), '\0');
-  std::snprintf(text.data(), text.size() + 1, pattern, values...);
-  return text;
-}
 
 using Duration = ViewRow::Duration;
 
@@ -68,7 +62,7 @@ double bus_and_waiting_share(const FinishedRun& run) {
 
 /// Seconds, or a blank where the timing was lost.
 std::string seconds_text(const Duration& duration) {
-  return duration ? format("%.6f", *duration) : std::string();
+  return duration ? fmt::format("{:.6f}", *duration) : std::string();
 }
 
 /// The value of one of a goal's factors; 0 of one it does not have.
@@ -80,13 +74,13 @@ double factor_of(const goal_t& goal, std::string_view name) {
 }
 
 std::string coverage_text(const ViewRow& row) {
-  return row.surface_coverage ? format("%.6f", *row.surface_coverage) : std::string();
+  return row.surface_coverage ? fmt::format("{:.6f}", *row.surface_coverage) : std::string();
 }
 
 std::string decision_text(const ViewRow& row) {
   if (!row.chosen()) return ",,,";
-  return format("%.9g,%d,%d,", row.goal.fitness, row.goal.iterations, row.goal.evaluations) +
-         seconds_text(row.plan_s);
+  return fmt::format("{:.9g},{},{},{}", row.goal.fitness, row.goal.iterations, row.goal.evaluations,
+                     seconds_text(row.plan_s));
 }
 
 }  // namespace
@@ -102,20 +96,18 @@ void write_views(std::ostream& out, const FinishedRun& run) {
          "move_s,scan_s,update_s,digest_s,fold_s,wait_s\n";
   for (const ViewRow& row : run.rows) {
     const commit_t& commit = row.commit;
-    out << row.view << ','
-        << format("%.6f,%.6f,%.6f,%.4f,%.4f,", commit.used_position_m[0], commit.used_position_m[1],
-                  commit.used_position_m[2], commit.pan_rad * kDegreesPerRad,
-                  commit.tilt_rad * kDegreesPerRad)
-        << decision_text(row) << ','
-        << format("%.6f,%.4f,%.4f,", commit.mean_quality, commit.occupied_area_m2,
-                  commit.occlusion_plane_area_m2)
-        << coverage_text(row) << ',' << commit.map_digest << ','
-        << format("%d,%.6f,%.6f,%.6f,", row.goal.attempt, row.arrival.path_length_m,
-                  static_cast<double>(commit.utime) * 1e-6, commit.min_quality);
+    fmt::print(out, "{},{:.6f},{:.6f},{:.6f},{:.4f},{:.4f},{},", row.view,
+               commit.used_position_m[0], commit.used_position_m[1], commit.used_position_m[2],
+               commit.pan_rad * kDegreesPerRad, commit.tilt_rad * kDegreesPerRad,
+               decision_text(row));
+    fmt::print(out, "{:.6f},{:.4f},{:.4f},{},{},", commit.mean_quality, commit.occupied_area_m2,
+               commit.occlusion_plane_area_m2, coverage_text(row), commit.map_digest);
+    fmt::print(out, "{},{:.6f},{:.6f},{:.6f},", row.goal.attempt, row.arrival.path_length_m,
+               static_cast<double>(commit.utime) * 1e-6, commit.min_quality);
     if (row.chosen()) {
-      out << format("%.6f,%.6f,%.6f,%.6f,%.6f,", row.goal.share_occupied,
-                    row.goal.share_occlusion_plane, row.goal.share_unseen, row.goal.share_open,
-                    factor_of(row.goal, "quality"));
+      fmt::print(out, "{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},", row.goal.share_occupied,
+                 row.goal.share_occlusion_plane, row.goal.share_unseen, row.goal.share_open,
+                 factor_of(row.goal, "quality"));
     } else {
       out << ",,,,,";
     }
@@ -186,31 +178,33 @@ void write_summary(std::ostream& out, const FinishedRun& run) {
 
 void write_table(std::ostream& out, const FinishedRun& run) {
   const auto line = [&out](const char* name, const std::string& value) {
-    out << format("  %-22s", name) << value << '\n';
+    fmt::print(out, "  {:<22}{}\n", name, value);
   };
-  out << run.config.scene_name << ", seed " << run.config.seed << ": " << run.rows.size()
-      << " views, " << run.stop_reason << ". " << run.stop_detail << '\n';
+  fmt::print(out, "{}, seed {}: {} views, {}. {}\n", run.config.scene_name, run.config.seed,
+             run.rows.size(), run.stop_reason, run.stop_detail);
   if (run.rows.empty()) return;
   const ViewRow& last = run.rows.back();
   if (last.surface_coverage) {
-    line("surface coverage", format("%.3f of %.1f m2 that can be seen", *last.surface_coverage,
-                                    run.visible ? run.visible->area_m2() : 0.0));
+    line("surface coverage",
+         fmt::format("{:.3f} of {:.1f} m2 that can be seen", *last.surface_coverage,
+                     run.visible ? run.visible->area_m2() : 0.0));
   } else {
     line("surface coverage", "unknown, because " + run.coverage_unknown);
   }
-  line("mean quality", format("%.3f", last.commit.mean_quality));
-  line("occupied area", format("%.1f m2", last.commit.occupied_area_m2));
-  line("path, collisions", format("%.1f m, %d", path_length_m(run), run.collisions));
+  line("mean quality", fmt::format("{:.3f}", last.commit.mean_quality));
+  line("occupied area", fmt::format("{:.1f} m2", last.commit.occupied_area_m2));
+  line("path, collisions", fmt::format("{:.1f} m, {}", path_length_m(run), run.collisions));
   if (run.other_refusals > 0) line("other refusals", std::to_string(run.other_refusals));
   std::string medians;
   for (const Stage& stage : kStages) {
-    medians +=
-        format("%s%s %.2f", medians.empty() ? "" : ", ", stage.name, 1e3 * median_s(run, stage));
+    medians += fmt::format("{}{} {:.2f}", medians.empty() ? "" : ", ", stage.name,
+                           1e3 * median_s(run, stage));
   }
   line("medians, ms", medians);
-  line("wall time",
-       format("%.2f s; first goal to last commit %.2f s, %.0f %% of it bus and waiting", run.wall_s,
-              run.first_goal_to_last_commit_s, 100.0 * bus_and_waiting_share(run)));
+  line(
+      "wall time",
+      fmt::format("{:.2f} s; first goal to last commit {:.2f} s, {:.0f} % of it bus and waiting",
+                  run.wall_s, run.first_goal_to_last_commit_s, 100.0 * bus_and_waiting_share(run)));
   line("map digest", last.commit.map_digest);
 }
 

@@ -1,7 +1,7 @@
+#include <fmt/format.h>
 #include <unistd.h>
 
 #include <chrono>
-#include <cstdio>
 #include <exception>
 #include <iostream>
 #include <thread>
@@ -47,13 +47,13 @@ class Watch {
 };
 
 void show(const ViewBound& bound) {
-  std::printf("  %2.0f %% ", 100.0 * bound.share);
+  fmt::print("  {:2.0f} % ", 100.0 * bound.share);
   if (!bound.reached) {
-    std::printf("not even with all poses together\n");
+    fmt::print("not even with all poses together\n");
     return;
   }
-  std::printf("greedy %d views, %.1f m; no planner below %d views, %.1f m\n", bound.greedy_views,
-              bound.greedy_m, bound.fewest_views, bound.shortest_m);
+  fmt::print("greedy {} views, {:.1f} m; no planner below {} views, {:.1f} m\n", bound.greedy_views,
+             bound.greedy_m, bound.fewest_views, bound.shortest_m);
 }
 
 int bound(const nextview::RunOptions& options) {
@@ -71,8 +71,8 @@ int bound(const nextview::RunOptions& options) {
       std::cerr << "nextview_bound: " << cache << " cannot be written to: see --cache" << std::endl;
     }
   }
-  std::printf("%s, positions %.2f m apart, 320 orientations\n", setup.config.scene_name.c_str(),
-              options.bound_spacing_m);
+  fmt::print("{}, positions {:.2f} m apart, 320 orientations\n", setup.config.scene_name,
+             options.bound_spacing_m);
   for (const ViewBound& each : *bounds) show(each);
   return 0;
 }

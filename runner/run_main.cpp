@@ -1,3 +1,4 @@
+#include <fmt/chrono.h>
 #include <unistd.h>
 
 #include <csignal>
@@ -7,8 +8,8 @@
 #include <iostream>
 
 #include "runner/exit_status.h"
-#include "runner/run.h"
 #include "runner/run_signals.h"
+#include "runner/run_supervisor.h"
 
 namespace {
 
@@ -16,12 +17,7 @@ using nextview::ArtefactFiles;
 using nextview::FinishedRun;
 using nextview::SetupError;
 
-std::string today() {
-  const std::time_t now = std::time(nullptr);
-  char text[32];
-  std::strftime(text, sizeof text, "%Y%m%d-%H%M%S", std::localtime(&now));
-  return text;
-}
+std::string today() { return fmt::format("{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr))); }
 
 /// The folder for the run's artefacts, made if it is not there.
 std::filesystem::path make_folder(const nextview::RunOptions& options,
@@ -58,7 +54,7 @@ void write_artefacts(const FinishedRun& run, const ArtefactFiles& files) {
   }
 }
 
-int run(const nextview::RunOptions& options, nextview::Run::Clock::time_point start) {
+int run(const nextview::RunOptions& options, nextview::RunSupervisor::Clock::time_point start) {
   nextview::RunSetup setup = nextview::prepare_run(options);
   const std::filesystem::path folder = make_folder(options, setup.config.scene_name);
   const ArtefactFiles files(folder);
@@ -69,7 +65,7 @@ int run(const nextview::RunOptions& options, nextview::Run::Clock::time_point st
                               setup.config.planner.max_views);
   for (const std::string& warning : setup.warnings) progress.say("warning: " + warning);
   const FinishedRun finished =
-      nextview::Run(options, std::move(setup), folder, progress).carry_out(start);
+      nextview::RunSupervisor(options, std::move(setup), folder, progress).carry_out(start);
   progress.finish();
   write_artefacts(finished, files);
   nextview::write_table(std::cout, finished);
@@ -87,7 +83,7 @@ int run(const nextview::RunOptions& options, nextview::Run::Clock::time_point st
 }  // namespace
 
 int main(int argc, char** argv) {
-  const auto start = nextview::Run::Clock::now();
+  const auto start = nextview::RunSupervisor::Clock::now();
   int exit_status = 0;
   const auto options =
       nextview::parse_run_options(argc, argv, exit_status, nextview::kRunDescription);

@@ -1,8 +1,9 @@
 #include "runner/run_setup.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <numbers>
 #include <optional>
@@ -20,12 +21,6 @@ namespace nextview {
 namespace {
 
 constexpr double kRadPerDegree = std::numbers::pi / 180.0;
-
-std::string two_decimals(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f", value);
-  return text;
-}
 
 std::string_view name_of(UpAxis axis) {
   switch (axis) {
@@ -59,11 +54,11 @@ void fill_start(run_config_t& config, const RunOptions& options, const SceneDesc
   std::optional<Eigen::Vector3d> start_m = scene.start_m;
   if (!options.start_m.empty()) start_m = Eigen::Vector3d(options.start_m.data());
   if (!start_m) {
-    throw SetupError(scene.file.string() + " says no start position: give --start X Y Z, inside (" +
-                     two_decimals(bounds.min().x()) + " .. " + two_decimals(bounds.max().x()) +
-                     ", " + two_decimals(bounds.min().y()) + " .. " +
-                     two_decimals(bounds.max().y()) + ", " + two_decimals(bounds.min().z()) +
-                     " .. " + two_decimals(bounds.max().z()) + ") m");
+    throw SetupError(
+        fmt::format("{} says no start position: give --start X Y Z, inside "
+                    "({:.2f} .. {:.2f}, {:.2f} .. {:.2f}, {:.2f} .. {:.2f}) m",
+                    scene.file.string(), bounds.min().x(), bounds.max().x(), bounds.min().y(),
+                    bounds.max().y(), bounds.min().z(), bounds.max().z()));
   }
   for (int axis = 0; axis < 3; ++axis) config.base.start_m[axis] = (*start_m)[axis];
   config.base.start_pan_rad = scene.start_pan_rad.value_or(0.0);
@@ -99,9 +94,10 @@ void fill_base(run_config_t& config, const RunOptions& options, const Eigen::Ali
   config.base.lift_max_m = options.lift_max_m.value_or(
       std::min(bounds.max().z() - options.body_radius_m, floor_m + kReach_m));
   if (config.base.lift_min_m >= config.base.lift_max_m) {
-    throw SetupError("the sensor's lowest height, " + two_decimals(config.base.lift_min_m) +
-                     " m, is not below its highest, " + two_decimals(config.base.lift_max_m) +
-                     " m: see --lift-min, --lift-max, --body-radius and --unit");
+    throw SetupError(
+        fmt::format("the sensor's lowest height, {:.2f} m, is not below its highest, {:.2f} m: see "
+                    "--lift-min, --lift-max, --body-radius and --unit",
+                    config.base.lift_min_m, config.base.lift_max_m));
   }
   config.base.base_speed_m_s = options.base_speed_m_s;
   config.base.lift_speed_m_s = options.lift_speed_m_s;
@@ -114,9 +110,9 @@ void fill_map(run_config_t& config, const RunOptions& options, const Eigen::Alig
   const double sides = bounds.sizes().maxCoeff() / options.voxel_size_m + 2 * options.margin_voxels;
   if (sides > kLargestSide - 2.0) {
     throw SetupError(
-        "the scene is " + two_decimals(bounds.sizes().maxCoeff()) +
-        " m long, more than the 4096 voxels a map may have: give a larger --voxel-size, "
-        "or the right --unit");
+        fmt::format("the scene is {:.2f} m long, more than the 4096 voxels a map may have: give a "
+                    "larger --voxel-size, or the right --unit",
+                    bounds.sizes().maxCoeff()));
   }
   const VoxelGrid grid = grid_of(config);
   const VoxelIndex margin = VoxelIndex::Constant(options.margin_voxels);
@@ -174,9 +170,10 @@ void check_start(const run_config_t& config, const Scene& scene) {
   const double clearance_m =
       scene.clearance_m(start.position_m, start.position_m, config.planner.clearance_m);
   if (clearance_m < config.planner.clearance_m) {
-    throw SetupError("--start: too near an obstacle, " + two_decimals(clearance_m) +
-                     " m where the planner keeps " + two_decimals(config.planner.clearance_m) +
-                     " m: start elsewhere, or give a smaller --clearance");
+    throw SetupError(
+        fmt::format("--start: too near an obstacle, {:.2f} m where the planner keeps {:.2f} m: "
+                    "start elsewhere, or give a smaller --clearance",
+                    clearance_m, config.planner.clearance_m));
   }
 }
 
@@ -219,9 +216,10 @@ RunSetup prepare_in_scene(const RunOptions& options) {
   check_start(config, *setup.scene);
   const double escape = escape_share(*setup.scene, start_pose_of(config).position_m);
   if (escape > 0.0) {
-    setup.warnings.push_back(two_decimals(100.0 * escape) +
-                             " % of the rays from the start meet no surface: the scene is not "
-                             "closed, and where nothing is met nothing can be recovered");
+    setup.warnings.push_back(
+        fmt::format("{:.2f} % of the rays from the start meet no surface: the scene is not closed, "
+                    "and where nothing is met nothing can be recovered",
+                    100.0 * escape));
   }
   return setup;
 }
@@ -248,9 +246,10 @@ RunSetup prepare_without_scene(const RunOptions& options) {
   const base_config_t& base = setup.config.base;
   if (!bounds.contains(Eigen::Vector3d(base.start_m)) || base.start_m[2] < base.lift_min_m ||
       base.start_m[2] > base.lift_max_m) {
-    throw SetupError("--start: outside --workspace, or not between --lift-min, " +
-                     two_decimals(base.lift_min_m) + " m, and --lift-max, " +
-                     two_decimals(base.lift_max_m) + " m");
+    throw SetupError(
+        fmt::format("--start: outside --workspace, or not between --lift-min, {:.2f} "
+                    "m, and --lift-max, {:.2f} m",
+                    base.lift_min_m, base.lift_max_m));
   }
   return setup;
 }

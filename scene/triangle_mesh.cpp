@@ -1,9 +1,9 @@
 #include "scene/triangle_mesh.h"
 
+#include <fmt/format.h>
 #include <xxhash.h>
 
 #include <bit>
-#include <cstdio>
 
 namespace nextview {
 
@@ -37,10 +37,7 @@ std::string mesh_digest(const TriangleMesh& mesh) {
   const XXH128_hash_t all = XXH3_128bits_withSeed(mesh.triangles.data(),
                                                   mesh.triangles.size() * sizeof(mesh.triangles[0]),
                                                   vertices.low64 ^ vertices.high64);
-  char text[33];
-  std::snprintf(text, sizeof(text), "%016llx%016llx", static_cast<unsigned long long>(all.high64),
-                static_cast<unsigned long long>(all.low64));
-  return text;
+  return fmt::format("{:016x}{:016x}", all.high64, all.low64);
 }
 
 }  // namespace nextview

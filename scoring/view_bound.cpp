@@ -1,5 +1,7 @@
 #include "scoring/view_bound.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -115,13 +117,12 @@ std::optional<std::vector<ViewBound>> kept_view_bounds(const std::string& cache_
 
 bool keep_view_bounds(const std::string& cache_folder, const std::string& scene_digest,
                       const ViewBoundQuestion& question, const std::vector<ViewBound>& bounds) {
-  std::ostringstream out;
-  out.precision(17);
+  std::string text;
   for (const ViewBound& bound : bounds) {
-    out << bound.share << ' ' << bound.reached << ' ' << bound.greedy_views << ' ' << bound.greedy_m
-        << ' ' << bound.fewest_views << ' ' << bound.shortest_m << '\n';
+    text += fmt::format("{} {:d} {} {} {} {}\n", bound.share, bound.reached, bound.greedy_views,
+                        bound.greedy_m, bound.fewest_views, bound.shortest_m);
   }
-  return keep(cache_folder, key_of(scene_digest, question), out.str());
+  return keep(cache_folder, key_of(scene_digest, question), text);
 }
 
 }  // namespace nextview

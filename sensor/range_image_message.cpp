@@ -1,9 +1,9 @@
 #include "sensor/range_image_message.h"
 
+#include <fmt/format.h>
 #include <xxhash.h>
 
 #include <algorithm>
-#include <cstdio>
 #include <stdexcept>
 
 #include "lcmtypes/decode.h"
@@ -109,10 +109,7 @@ Hash128 hash_of(range_image_t part) {
 }
 
 std::string hexadecimal(const XXH128_hash_t& hash) {
-  char text[33];
-  std::snprintf(text, sizeof text, "%016llx%016llx", static_cast<unsigned long long>(hash.high64),
-                static_cast<unsigned long long>(hash.low64));
-  return text;
+  return fmt::format("{:016x}{:016x}", hash.high64, hash.low64);
 }
 
 }  // namespace

@@ -150,7 +150,7 @@ TEST_F(LongRun, NamesAReasonToStopThatItDoesNotKnow) {
   const std::string lcm_url = bus[1];
   Bus stranger(lcm_url, std::stoll(bus[2]), "stranger");
   stop_t stop{};
-  stop.run = stranger.run();
+  stop.run = stranger.run_number();
   stop.views = 3;
   stop.stop_reason = "bored";
   stop.detail = "Nothing on.";

@@ -1,9 +1,8 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <iomanip>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "runner/run_setup.h"
 #include "tests/system/program.h"
@@ -13,11 +12,7 @@ namespace {
 
 constexpr int kViews = 12;
 
-std::string exactly(double value) {
-  std::ostringstream text;
-  text << std::setprecision(17) << value;
-  return text.str();
-}
+std::string exactly(double value) { return fmt::format("{}", value); }
 
 /// The words that follow a text in what a program says, up to a separator.
 std::string after(const std::string& output, const std::string& text, char separator) {

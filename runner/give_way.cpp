@@ -1,0 +1,10 @@
+#include "runner/give_way.h"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace nextview {
+
+void give_way() { setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 15); }
+
+}  // namespace nextview

@@ -1,0 +1,34 @@
+#include "runner/heard_run.h"
+
+namespace nextview {
+
+void HeardRun::listen(Bus& bus) {
+  const auto add = [this](const auto& message) {
+    record.add(message);
+    last_progress = Clock::now();
+  };
+  bus.on<goal_t>([this, add](const goal_t& goal) {
+    add(goal);
+    if (!first_goal) first_goal = last_progress;
+  });
+  bus.on<search_t>(add);
+  bus.on<arrival_t>(add);
+  bus.on<range_image_t>(add);
+  bus.on<commit_t>([this, add](const commit_t& commit) {
+    add(commit);
+    last_commit = last_progress;
+  });
+  bus.on<stop_t>(add);
+  bus.on<timing_t>([this](const timing_t& timing) { record.add(timing); });
+  bus.on<status_t>([this](const status_t& status) {
+    statuses[status.role] = status;
+    fresh_statuses.insert(status.role);
+  });
+  bus.on_missing([this](const request_t& request) {
+    if (request.wanted_channel == Channel<run_config_t>::name) {
+      asked_for_config.insert(request.asker);
+    }
+  });
+}
+
+}  // namespace nextview

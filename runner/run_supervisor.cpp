@@ -1,0 +1,338 @@
+#include "runner/run_supervisor.h"
+
+#include <fmt/format.h>
+#include <sys/resource.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <exception>
+#include <random>
+#include <set>
+#include <utility>
+
+#include "base_sim/base.h"
+#include "lcmtypes/ask_timer.h"
+#include "runner/give_way.h"
+#include "runner/log_completion.h"
+#include "runner/run_signals.h"
+#include "runner/waited_for.h"
+#include "scoring/kept_file.h"
+#include "sensor/sensor_config.h"
+
+namespace nextview {
+namespace {
+
+using std::chrono::milliseconds;
+using Clock = RunSupervisor::Clock;
+
+double seconds_between(Clock::time_point start, Clock::time_point end) {
+  return std::chrono::duration<double>(end - start).count();
+}
+
+/// Tells runs apart on a bus they share; of no influence on what a run does.
+std::int64_t new_run_number() {
+  std::random_device random;
+  return static_cast<std::int64_t>((std::uint64_t{random()} << 31 ^ random()) >> 1) + 1;
+}
+
+/// Whether all of these roles are among those heard of. Others may take part too: a viewer, say.
+bool all_of(const std::set<std::string>& roles, const std::set<std::string>& heard_of) {
+  return std::includes(heard_of.begin(), heard_of.end(), roles.begin(), roles.end());
+}
+
+/// Waits from first on up to two seconds.
+AskTimer reminder_after(milliseconds first) { return AskTimer(first, milliseconds(2000)); }
+
+void count_refusals(const RunRecord& record, FinishedRun& run) {
+  for (const auto& [key, arrival] : record.arrivals()) {
+    if (arrival.arrived) continue;
+    ++(arrival.refusal.starts_with(kCollision) ? run.collisions : run.other_refusals);
+  }
+}
+
+/// As the log says it; a reason that is none of ours gets a sentence of its own.
+void take_end(const stop_t& stop, FinishedRun& run) {
+  run.stop_reason = stop.stop_reason;
+  run.stop_detail = stop.detail;
+  if (stop_reason_from_string(run.stop_reason)) return;
+  run.stop_detail = fmt::format(
+      "The run was ended for the reason \"{}\", which this version of nextview_run does not know: "
+      "start it with the planner it was built with. {}",
+      stop.stop_reason, stop.detail);
+}
+
+}  // namespace
+
+RunSupervisor::RunSupervisor(const RunOptions& options, RunSetup setup,
+                             const std::filesystem::path& folder, Progress& progress)
+    : options_(options),
+      answering_(answering_roles(options.without)),
+      setup_(std::move(setup)),
+      files_(folder),
+      progress_(progress),
+      rows_(setup_.config) {
+  setup_.config.run = new_run_number();
+}
+
+RunSupervisor::~RunSupervisor() {
+  if (processes_) processes_->end_all();
+}
+
+FinishedRun RunSupervisor::carry_out(Clock::time_point program_start) {
+  try {
+    start_up();
+    watch();
+    complete_log();
+    collect_statuses();
+  } catch (const EndsEarly& end) {
+    end_early(end);
+  } catch (const BusError& error) {
+    if (!heard_.record.config()) throw;  // nothing has begun
+    end_early({StopReason::BusFailed, error.what()});
+  }
+  return finish(program_start);
+}
+
+void RunSupervisor::join_bus() {
+  lcm_url_ = options_.lcm_url;
+  if (const char* url = std::getenv("LCM_DEFAULT_URL"); lcm_url_.empty() && url != nullptr) {
+    lcm_url_ = url;
+  }
+  if (lcm_url_.empty()) {
+    port_ = PortLock::acquire();
+    lcm_url_ = port_->lcm_url();
+  }
+  bus_ = std::make_unique<Bus>(lcm_url_, setup_.config.run, "run");
+  heard_.listen(*bus_);
+}
+
+template <class Condition>
+void RunSupervisor::pump_until(const Condition& condition) {
+  AskTimer reminder = reminder_after(milliseconds(5));
+  while (!condition()) {
+    if (reminder.due()) bus_->request<status_t>(0, 0);
+    pump(milliseconds(5));
+  }
+}
+
+void RunSupervisor::start_up() {
+  join_bus();
+  processes_.emplace(lcm_url_, setup_.config.run, files_.log, answering_);
+  if (options_.verbose || !options_.without.empty()) {
+    progress_.say(fmt::format("bus: {}, run {}", lcm_url_, setup_.config.run));
+  }
+
+  // Nothing is known about a run before its configuration is, so the run starts with it: not before
+  // all processes have asked for it, and requests are seen to arrive in the log.
+  heard_.last_progress = Clock::now();
+  const std::set<std::string> answering(answering_.begin(), answering_.end());
+  pump_until([&] { return recording() && all_of(answering, heard_.asked_for_config); });
+  heard_.record.add(setup_.config);
+  bus_->publish(setup_.config);
+  heard_.last_progress = Clock::now();
+  if (setup_.scene && !options_.no_coverage) start_scoring();
+  // Each says so when it has loaded what it needs; only then is there somebody to hear a goal.
+  pump_until([&] { return all_of(answering, heard_.fresh_statuses); });
+  processes_->start_planner();
+  heard_.last_progress = Clock::now();
+}
+
+bool RunSupervisor::recording() {
+  if (!log_ && std::filesystem::exists(files_.log)) {
+    log_.emplace(files_.log, setup_.config.run, RangeImages::OnlyCount);
+  }
+  if (log_) log_->read_on();
+  return log_ && log_->counters().ours > 0;
+}
+
+void RunSupervisor::start_scoring() {
+  scoring_.emplace(
+      [scene = setup_.scene, config = setup_.config, cache = cache_folder(options_.cache)](
+          const std::stop_token& stop, VisibilityProgress* progress) {
+        return kept_visible_surface(cache, *scene, std::string(config.scene_digest),
+                                    start_pose_of(config).position_m, visibility_of(config), stop,
+                                    progress);
+      });
+}
+
+void RunSupervisor::watch() {
+  give_way();  // from here on this process only looks on
+  AskTimer reminder = reminder_after(milliseconds(300));
+  auto reminded_since = heard_.last_progress;
+  const RunRecord& record = heard_.record;
+  while (!record.stop() || !record.missing().empty()) {
+    pump(milliseconds(20));
+    make_rows();
+    if (reminded_since != heard_.last_progress) {
+      reminded_since = heard_.last_progress;
+      reminder.restart();
+    }
+    // Most often nothing is lost and somebody works; asking costs little, and else nobody would
+    // make good what only this listener has missed.
+    if (reminder.due()) {
+      for (const MissingMessage& missing : record.missing()) request(*bus_, missing);
+    }
+  }
+  make_rows();
+}
+
+void RunSupervisor::make_rows(milliseconds wait_for_scoring) {
+  if (scoring_) {
+    if (auto visible = scoring_->take(wait_for_scoring)) {
+      visible_ = std::move(*visible);
+      rows_.set_visible(*visible_);
+    }
+  }
+  while (const ViewRow* row = rows_.advance(heard_.record)) progress_.show(*row);
+}
+
+void RunSupervisor::complete_log() {
+  // The recorder writes out what it holds when something more comes: the request and its answers.
+  bus_->request<status_t>(0, 0);
+  AskTimer reminder = reminder_after(milliseconds(20));
+  heard_.last_progress = Clock::now();
+  for (;;) {
+    const std::int64_t had = log_->counters().ours;
+    log_->read_on();
+    const std::vector<MissingMessage> missing = log_->record().missing();
+    if (missing.empty()) return;
+    if (log_->counters().ours != had) heard_.last_progress = Clock::now();
+    if (reminder.due()) {
+      for (const MissingMessage& message : missing) request(*bus_, message);
+    }
+    try {
+      pump(milliseconds(5));
+    } catch (const EndsEarly& end) {
+      if (end.reason != StopReason::NoAnswer) throw;
+      throw EndsEarly{end.reason, "the log still lacks " + describe(missing.front()) +
+                                      ", however often it was asked for"};
+    }
+  }
+}
+
+void RunSupervisor::collect_statuses() {
+  heard_.fresh_statuses.clear();
+  AskTimer reminder = reminder_after(milliseconds(50));
+  bus_->request<status_t>(0, 0);
+  // Only for the summary, so a process that does not answer is not waited for very long.
+  const auto until = Clock::now() + milliseconds(1000);
+  std::set<std::string> roles(answering_.begin(), answering_.end());
+  roles.insert("planner");
+  while (!all_of(roles, heard_.fresh_statuses) && Clock::now() < until) {
+    pump(milliseconds(5));
+    if (reminder.due()) bus_->request<status_t>(0, 0);
+  }
+}
+
+void RunSupervisor::end_early(const EndsEarly& end) {
+  ended_early_ = end;
+  if (!processes_ || !bus_) return;
+  processes_->end_planner();
+  RunRecord& record = heard_.record;
+  try {
+    if (!log_ || !record.config()) return;
+    read_log_to_its_end(*log_, *bus_, heard_);
+    make_rows();
+    if (const auto& recorded = log_->record().stop()) {  // heard here or not
+      if (!record.stop()) record.add(*recorded);
+      return;
+    }
+    // The planner has not ended the run, so that its log says how it ended somebody else must.
+    stop_t stop{};
+    stop.views = log_->record().views_taken();
+    stop.stop_reason = std::string(to_string(end.reason));
+    stop.detail = end.detail;
+    publish_into_log(record.stop().value_or(stop), *log_, *bus_);
+    make_rows();
+  } catch (const std::exception& error) {
+    progress_.say(std::string("the end of the run could not be logged: ") + error.what());
+  }
+}
+
+void RunSupervisor::end_processes(FinishedRun& run) {
+  if (processes_) {
+    processes_->end_all();
+    const auto lines = processes_->take_lines();  // lcm-logger says goodbye
+    if (options_.verbose) {
+      for (const std::string& line : lines) progress_.say(line);
+    }
+    run.peak_memory_bytes = processes_->peak_memory_bytes();
+  }
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  run.peak_memory_bytes["run"] = std::int64_t{usage.ru_maxrss} * 1024;
+}
+
+void RunSupervisor::wait_for_scoring() {
+  if (!scoring_) return;
+  AskTimer patience = reminder_after(milliseconds(1000));
+  while (scoring_->pending() && noted_signal() == 0 && !ended_early_) {
+    make_rows(milliseconds(50));
+    if (scoring_->pending() && patience.due()) {
+      progress_.say(fmt::format(
+          "working out how much of the scene can be seen at all, for the coverage: {} %",
+          scoring_->percent()));
+    }
+  }
+  scoring_->request_stop();
+}
+
+std::string RunSupervisor::why_coverage_is_unknown() const {
+  if (visible_) return {};
+  if (!setup_.scene) return "there is no CAD model to hold the map against";
+  if (options_.no_coverage) return "--no-coverage was given";
+  if (scoring_ && !scoring_->failure().empty()) return scoring_->failure();
+  return "the run ended before it was worked out";
+}
+
+FinishedRun RunSupervisor::finish(Clock::time_point program_start) {
+  FinishedRun run;
+  end_processes(run);
+  wait_for_scoring();
+  const RunRecord& record = heard_.record;
+  if (record.config()) rows_.complete(record);
+
+  run.config = setup_.config;
+  run.rows = rows_.rows();
+  run.visible = visible_;
+  run.coverage_unknown = why_coverage_is_unknown();
+  run.statuses = heard_.statuses;
+  run.lcm_url = lcm_url_;
+  if (log_) run.log = log_->counters();
+  count_refusals(record, run);
+  if (ended_early_) {
+    run.stop_reason = to_string(ended_early_->reason);
+    run.stop_detail = ended_early_->detail;
+  } else {
+    take_end(*record.stop(), run);
+  }
+  if (heard_.first_goal) run.start_up_s = seconds_between(program_start, *heard_.first_goal);
+  if (heard_.first_goal && heard_.last_commit) {
+    run.first_goal_to_last_commit_s = seconds_between(*heard_.first_goal, *heard_.last_commit);
+  }
+  run.wall_s = seconds_between(program_start, Clock::now());
+  return run;
+}
+
+void RunSupervisor::pump(milliseconds timeout) {
+  bus_->handle(timeout);
+  check_on_processes();
+  if (noted_signal() != 0) {
+    throw EndsEarly{StopReason::Interrupted, "The run was interrupted by a signal."};
+  }
+  if (seconds_between(heard_.last_progress, Clock::now()) > options_.patience_s) {
+    throw EndsEarly{StopReason::NoAnswer,
+                    fmt::format("{} for {} s (--patience)", waited_for(heard_, answering_),
+                                std::lround(options_.patience_s))};
+  }
+}
+
+void RunSupervisor::check_on_processes() {
+  if (!processes_) return;
+  const std::optional<std::string> casualty = processes_->casualty();
+  for (const std::string& line : processes_->take_lines()) progress_.say(line);
+  if (casualty) throw EndsEarly{StopReason::ProcessDied, *casualty};
+}
+
+}  // namespace nextview

@@ -1,0 +1,75 @@
+#include "runner/waited_for.h"
+
+#include <gtest/gtest.h>
+
+namespace nextview {
+namespace {
+
+const std::vector<std::string> kAll = {"base_sim", "sensor_sim", "mapper"};
+
+/// A run whose processes are ready, in which the planner has given a goal of each view so far.
+HeardRun run_at_goal_of(int view) {
+  HeardRun heard;
+  run_config_t config{};
+  config.planner.max_views = 10;
+  config.planner.max_attempts = 3;
+  heard.record.add(config);
+  for (const std::string& role : kAll) heard.statuses[role] = {};
+  for (int k = 1; k <= view; ++k) {
+    goal_t goal{};
+    goal.view = k;
+    goal.attempt = 1;
+    heard.record.add(goal);
+  }
+  return heard;
+}
+
+arrival_t arrival_at(int view, bool arrived) {
+  arrival_t arrival{};
+  arrival.view = view;
+  arrival.attempt = 1;
+  arrival.arrived = arrived;
+  return arrival;
+}
+
+TEST(WaitedFor, NamesWhoHasNotAskedForTheConfiguration) {
+  HeardRun heard;
+  EXPECT_EQ(waited_for(heard, kAll), "nothing was heard of base_sim, sensor_sim, mapper");
+  heard.asked_for_config = {"sensor_sim", "viewer"};
+  EXPECT_EQ(waited_for(heard, kAll), "nothing was heard of base_sim, mapper");
+  heard.asked_for_config = {"base_sim", "sensor_sim", "mapper"};
+  EXPECT_EQ(waited_for(heard, kAll), "nothing was heard of lcm-logger, which has recorded nothing");
+}
+
+TEST(WaitedFor, NamesWhoIsNotReady) {
+  HeardRun heard = run_at_goal_of(0);
+  heard.statuses.erase("sensor_sim");
+  EXPECT_EQ(waited_for(heard, kAll), "sensor_sim did not get ready");
+}
+
+TEST(WaitedFor, FollowsAViewFromGoalToCommit) {
+  HeardRun heard = run_at_goal_of(0);
+  EXPECT_EQ(waited_for(heard, kAll), "the planner gave no goal after view 0");
+  heard = run_at_goal_of(2);
+  EXPECT_EQ(waited_for(heard, kAll), "base_sim did not answer the goal of view 2");
+  EXPECT_EQ(waited_for(heard, {"mapper"}),
+            "the driver in place of base_sim did not answer the goal of view 2");
+  heard.record.add(arrival_at(2, true));
+  EXPECT_EQ(waited_for(heard, kAll), "sensor_sim sent no range image of view 2");
+  EXPECT_EQ(waited_for(heard, {"base_sim", "mapper"}),
+            "the driver in place of sensor_sim sent no range image of view 2");
+  commit_t commit{};
+  commit.view = 2;
+  commit.attempt = 1;
+  heard.record.add(commit);
+  EXPECT_EQ(waited_for(heard, kAll), "the planner gave no goal after view 2");
+}
+
+TEST(WaitedFor, ARefusedGoalIsThePlannersAgain) {
+  HeardRun heard = run_at_goal_of(2);
+  heard.record.add(arrival_at(2, false));
+  EXPECT_EQ(waited_for(heard, kAll), "the planner gave no goal after view 2");
+}
+
+}  // namespace
+}  // namespace nextview
