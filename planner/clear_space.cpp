@@ -15,12 +15,6 @@ int squared_voxels(double length_m, double voxel_size_m) {
   return static_cast<int>(std::ceil(voxels * voxels - 1e-6));
 }
 
-bool within_limits(const FeasibilityParameters& parameters, const Eigen::Vector3d& position_m) {
-  return (position_m.array() >= parameters.workspace_min_m.array()).all() &&
-         (position_m.array() <= parameters.workspace_max_m.array()).all() &&
-         position_m.z() >= parameters.lift_min_m && position_m.z() <= parameters.lift_max_m;
-}
-
 }  // namespace
 
 ClearSpace::ClearSpace(const VoxelMap& map, const FeasibilityParameters& parameters)
@@ -47,7 +41,7 @@ ClearSpace::ClearSpace(const VoxelMap& map, const FeasibilityParameters& paramet
       for (int i = window_.min[0]; i < end[0]; ++i) {
         const VoxelIndex index(i, j, k);
         const Cell cell = this->cell(index);
-        if (within_limits(parameters_, grid_.center_m(index))) against_[cell] &= ~kBeyondLimits;
+        if (parameters_.within_limits(grid_.center_m(index))) against_[cell] &= ~kBeyondLimits;
         change(cell, kind_of(map.label(index)));
       }
     }

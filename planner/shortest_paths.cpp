@@ -41,8 +41,8 @@ constexpr std::uint32_t kBuckets = 2048;
 
 }  // namespace
 
-void ShortestPaths::find(const ClearSpace& space, const VoxelMap& map,
-                         const Eigen::Vector3d& present_m, double departure_m) {
+void ShortestPaths::stand_at(const ClearSpace& space, const VoxelMap& map,
+                             const Eigen::Vector3d& present_m, double departure_m) {
   const VoxelIndex present = space.grid().voxel_of(present_m);
   if (!space.window().contains(present)) {
     throw std::invalid_argument("the sensor stands outside the map's window");
@@ -55,8 +55,13 @@ void ShortestPaths::find(const ClearSpace& space, const VoxelMap& map,
   for (const Cell cell : exempted_) passage_[cell] = Passage::AsClear;
   exempted_.clear();
   reached_.clear();
+  found_all_ = false;
   exempt_around(map, present, departure_m);
-  spread(space.cell(present));
+}
+
+bool ShortestPaths::may_be_at(const Eigen::Vector3d& position_m) const {
+  const VoxelIndex voxel = space_->grid().voxel_of(position_m);
+  return space_->window().contains(voxel) && may_pass(space_->cell(voxel));
 }
 
 int ShortestPaths::nearest_occupied(const VoxelMap& map, const VoxelIndex& voxel, int limit) const {
@@ -126,7 +131,10 @@ void ShortestPaths::exempt_around(const VoxelMap& map, const VoxelIndex& present
   }
 }
 
-void ShortestPaths::spread(Cell start) {
+void ShortestPaths::find_all() {
+  if (found_all_) return;
+  found_all_ = true;
+  const Cell start = space_->cell(space_->grid().voxel_of(present_m_));
   std::array<int, 26> step;
   for (std::size_t d = 0; d < step.size(); ++d) step[d] = space_->step(directions()[d].by);
   buckets_.resize(kBuckets);
@@ -174,8 +182,9 @@ bool ShortestPaths::straight_is_clear(const Eigen::Vector3d& from_m,
   return true;
 }
 
-std::vector<Eigen::Vector3d> ShortestPaths::waypoints_m(const VoxelIndex& voxel) const {
-  std::vector<Eigen::Vector3d> path = {space_->grid().center_m(voxel)};
+std::vector<Eigen::Vector3d> ShortestPaths::waypoints_m(const VoxelIndex& voxel,
+                                                        const Eigen::Vector3d& end_m) const {
+  std::vector<Eigen::Vector3d> path = {end_m};
   for (Cell cell = space_->cell(voxel); arrived_[cell] != kStart;) {
     cell -= static_cast<Cell>(space_->step(directions()[arrived_[cell]].by));
     path.push_back(space_->grid().center_m(space_->index(cell)));
