@@ -1,5 +1,6 @@
 #include "planner/feasibility.h"
 
+#include <cmath>
 #include <stdexcept>
 #include <string>
 
@@ -13,7 +14,19 @@ void require(bool holds, const char* parameter, const char* rule) {
   if (!holds) throw std::invalid_argument(std::string(parameter) + " must be " + rule);
 }
 
+// The least whole number that is not below a squared length of so many units.
+int squared(double units) {
+  // 0.3 / 0.1 is a little below 3: a length of whole voxels must not lose one to rounding.
+  return static_cast<int>(std::ceil(units * units - 1e-6));
+}
+
 }  // namespace
+
+VoxelNearness::VoxelNearness(double length_m, double voxel_size_m)
+    : center_limit_(squared(length_m / voxel_size_m)),
+      box_limit_(squared(2.0 * length_m / voxel_size_m)) {}
+
+int VoxelNearness::reach() const { return static_cast<int>(std::ceil(std::sqrt(center_limit_))); }
 
 void FeasibilityParameters::check() const {
   bounds::kClearance.require(clearance_m);

@@ -84,26 +84,22 @@ void ShortestPaths::exempt_around(const VoxelMap& map, const VoxelIndex& present
                                   double departure_m) {
   const FeasibilityParameters& parameters = space_->parameters();
   const double voxel_m = space_->grid().voxel_size_m;
-  const auto squared = [&](double length_m) {
-    const double voxels = length_m / voxel_m;
-    return static_cast<int>(std::ceil(voxels * voxels - 1e-6));
-  };
-  const int clear = squared(parameters.clearance_m);
-  const int body = squared(parameters.body_radius_m);
-  const int departure = squared(departure_m);
-  const int body_reach = static_cast<int>(std::ceil(std::sqrt(body)));
+  const int clear = VoxelNearness(parameters.clearance_m, voxel_m).center_limit();
+  const VoxelNearness body(parameters.body_radius_m, voxel_m);
+  const VoxelNearness departure(departure_m, voxel_m);
+  const int body_reach = body.reach();
   // Beyond this no voxel can have an unknown one within the departure in its body.
-  const int reach = static_cast<int>(std::ceil(std::sqrt(departure))) + body_reach;
+  const int reach = departure.reach() + body_reach;
   const int at_present = nearest_occupied(map, present, clear);
   const auto unknown_near = [&](const VoxelIndex& voxel) {
     for (int k = -body_reach; k <= body_reach; ++k) {
       for (int j = -body_reach; j <= body_reach; ++j) {
         for (int i = -body_reach; i <= body_reach; ++i) {
           const VoxelIndex step(i, j, k);
-          if (step.squaredNorm() >= body) continue;
+          if (!body.box_is_nearer(step)) continue;
           const Label label = map.label(voxel + step);
           if (label == Label::Empty || label == Label::Occupied) continue;
-          if ((voxel + step - present).squaredNorm() >= departure) return true;
+          if (!departure.center_is_nearer(voxel + step - present)) return true;
         }
       }
     }

@@ -93,10 +93,32 @@ TEST_F(EmptyHall, ThePathMustBeKnownEmpty) {
 }
 
 TEST_F(EmptyHall, NothingUnknownMayBeWithinTheBody) {
-  map.set_label({25, 21, 10}, Label::Unmarked);  // 0.1 m beside the way
+  map.set_label({25, 22, 10}, Label::Unmarked);  // begins 0.15 m beside the way
   EXPECT_FALSE(reachable({3.0, 2.0, 1.0}));
-  parameters.body_radius_m = 0.1;
+  parameters.body_radius_m = 0.15;
   EXPECT_TRUE(reachable({3.0, 2.0, 1.0}));
+}
+
+// What an unknown voxel hides may be in its nearest corner.
+TEST(VoxelNearness, IsOfCentresOrOfBoxes) {
+  const VoxelNearness near(0.2, 0.1);
+  EXPECT_TRUE(near.center_is_nearer({1, 1, 1}));
+  EXPECT_FALSE(near.center_is_nearer({2, 0, 0}));
+  EXPECT_TRUE(near.box_is_nearer({0, 0, 0}));
+  EXPECT_TRUE(near.box_is_nearer({-2, 0, 0}));   // 0.15 m
+  EXPECT_TRUE(near.box_is_nearer({2, 1, -1}));   // hypot(0.15, 0.05, 0.05) = 0.166 m
+  EXPECT_FALSE(near.box_is_nearer({2, -2, 0}));  // hypot(0.15, 0.15) = 0.212 m
+  EXPECT_FALSE(near.box_is_nearer({3, 0, 0}));   // 0.25 m
+  EXPECT_TRUE(VoxelNearness(0.26, 0.1).box_is_nearer({0, 3, 0}));
+  EXPECT_FALSE(VoxelNearness(0.25, 0.1).box_is_nearer({0, 3, 0}));
+  EXPECT_FALSE(VoxelNearness(0.0, 0.1).box_is_nearer({0, 0, 0}));
+  // Nothing beyond the reach is nearer, and something at it may be.
+  for (double length_m = 0.01; length_m < 0.6; length_m += 0.01) {
+    const VoxelNearness nearness(length_m, 0.1);
+    EXPECT_FALSE(nearness.box_is_nearer({nearness.reach() + 1, 0, 0})) << length_m;
+    EXPECT_FALSE(nearness.center_is_nearer({nearness.reach() + 1, 0, 0})) << length_m;
+    EXPECT_TRUE(nearness.box_is_nearer({nearness.reach() - 1, 0, 0})) << length_m;
+  }
 }
 
 TEST_F(EmptyHall, UnknownSpaceWhereTheRobotStandsDoesNotHoldIt) {
@@ -228,9 +250,13 @@ bool plainly_reachable(const VoxelMap& map, const FeasibilityParameters& paramet
     return nearest;
   };
   const auto unknown_near = [&](const VoxelIndex& voxel) {
-    for (int k = -1; k <= 1; ++k) {
-      for (int j = -1; j <= 1; ++j) {
-        for (int i = -1; i <= 1; ++i) {  // nearer than 0.20 m
+    for (int k = -2; k <= 2; ++k) {
+      for (int j = -2; j <= 2; ++j) {
+        for (int i = -2; i <= 2; ++i) {
+          // From the voxel's centre to the nearest point of the box, in voxels.
+          const Vector3d apart =
+              (Vector3d(i, j, k).cwiseAbs() - Vector3d::Constant(0.5)).cwiseMax(0);
+          if (apart.norm() >= 2.0) continue;  // not nearer than 0.20 m
           const VoxelIndex at = voxel + VoxelIndex(i, j, k);
           const Label label = map.label(at);
           const bool unknown = label != Label::Empty && label != Label::Occupied;

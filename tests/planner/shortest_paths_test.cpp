@@ -17,10 +17,10 @@ using Eigen::Vector3d;
 
 class Paths : public ::testing::Test {
  protected:
-  // Clearance and body of one voxel: only the voxels themselves are in the way.
+  // Clearance of one voxel, body of half a voxel: only the voxels themselves are in the way.
   Paths() {
     parameters.clearance_m = 0.1;
-    parameters.body_radius_m = 0.1;
+    parameters.body_radius_m = 0.05;
   }
 
   static VoxelMap empty_map(const VoxelIndex& size) {
@@ -152,9 +152,10 @@ TEST_F(Paths, KeepTheClearanceAndTheBody) {
   EXPECT_EQ(paths.length_m({17, 15, 15}), ShortestPaths::kUnreachable);  // 3 voxels away
   EXPECT_LT(paths.length_m({16, 15, 15}), 2.0);                          // 4
   EXPECT_EQ(paths.length_m({6, 16, 15}), ShortestPaths::kUnreachable);   // sqrt 2
-  EXPECT_LT(paths.length_m({7, 15, 15}), 2.0);                           // 2
-  EXPECT_EQ(paths.length_m({0, 15, 15}), ShortestPaths::kUnreachable);   // the window's rim
-  EXPECT_LT(paths.length_m({1, 15, 15}), 2.0);
+  EXPECT_EQ(paths.length_m({7, 15, 15}), ShortestPaths::kUnreachable);   // 2, its box 1.5
+  EXPECT_LT(paths.length_m({8, 15, 15}), 2.0);                           // 3, its box 2.5
+  EXPECT_EQ(paths.length_m({1, 15, 15}), ShortestPaths::kUnreachable);   // the window's rim
+  EXPECT_LT(paths.length_m({2, 15, 15}), 2.0);
 }
 
 TEST_F(Paths, DepartFromUnknownSurroundings) {
@@ -221,10 +222,10 @@ TEST(ClearSpace, FollowsTheMapAsIfMadeAnew) {
       const VoxelIndex voxel = map.window().min + VoxelIndex(static_cast<int>(random() % 14),
                                                              static_cast<int>(random() % 12),
                                                              static_cast<int>(random() % 10));
-      const auto draw = static_cast<int>(random() % 100);
-      const Label label = draw < 96   ? Label::Empty
-                          : draw < 98 ? Label::Occupied
-                                      : Label::OcclusionPlane;
+      const auto draw = static_cast<int>(random() % 200);
+      const Label label = draw < 196   ? Label::Empty
+                          : draw < 199 ? Label::Occupied
+                                       : Label::OcclusionPlane;
       map.set_label(voxel, label);
       changed.push_back(static_cast<std::uint32_t>(map.slot(voxel)));
     }
