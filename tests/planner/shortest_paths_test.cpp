@@ -197,6 +197,21 @@ TEST_F(Paths, KeepToWorkspaceAndLift) {
   EXPECT_EQ(paths.length_m({5, 10, 11}), ShortestPaths::kUnreachable);
 }
 
+// Two storeys with a stairwell between them: the lift decides how far up the robot gets.
+TEST_F(Paths, LeadToAnotherStoreyWhereTheLiftAllows) {
+  VoxelMap map = empty_map({20, 20, 60});
+  fill(map, {0, 0, 28}, {20, 20, 31}, Label::Occupied);
+  fill(map, {12, 12, 28}, {18, 18, 31}, Label::Empty);
+  parameters.lift_max_m = 2.85;
+  find(map, {5, 5, 12});
+  EXPECT_EQ(paths.length_m({5, 5, 40}), ShortestPaths::kUnreachable);
+  EXPECT_LT(paths.length_m({15, 15, 27}), 3.0);
+  parameters.lift_max_m = 5.0;
+  find(map, {5, 5, 12});
+  EXPECT_GT(paths.length_m({5, 5, 40}), 3.0);
+  EXPECT_LT(paths.length_m({5, 5, 40}), 5.0);
+}
+
 TEST_F(Paths, KeepOutOfWhatIsBlocked) {
   const VoxelMap map = empty_map({20, 20, 5});
   ClearSpace space(map, parameters);
