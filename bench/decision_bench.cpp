@@ -29,6 +29,7 @@ struct Moment {
   SensorPose present;  // where the last view was taken from
   std::unique_ptr<MapBuilder> builder;
   std::unique_ptr<KnownSpace> space;  // of its map
+  std::unique_ptr<ClearSpace> clear;  // likewise
 };
 
 // Works out every prediction by one kernel and answers with the counts another gave, so that the
@@ -79,15 +80,18 @@ std::shared_ptr<ViewPredictor> fast_predictor(double voxel_size_m, bool quality,
                                              icosahedron_orientations(), quality, threads);
 }
 
-std::optional<Decision> decide_after(const KnownSpace& space, const SensorPose& present, int views,
+std::optional<Decision> decide_after(const KnownSpace& space, const ClearSpace& clear,
+                                     const SensorPose& present, int views,
                                      ViewPredictor& predictor) {
   PlannerParameters parameters;
   parameters.use_quality = predictor.counts_quality();
-  return decide_by_simplex({space, present, 1, views + 1, 1, {}}, predictor, parameters);
+  static ShortestPaths paths;  // as a run's, keeps its memory from one decision to the next
+  paths.stand_at(clear, space.map(), present.position_m, parameters.feasibility.departure_m);
+  return decide_by_simplex({space, present, 1, views + 1, 1, {}}, paths, predictor, parameters);
 }
 
 std::optional<Decision> decide(const Moment& moment, ViewPredictor& predictor) {
-  return decide_after(*moment.space, moment.present, moment.view, predictor);
+  return decide_after(*moment.space, *moment.clear, moment.present, moment.view, predictor);
 }
 
 RecordedRun record_run(const BenchScene& scene, double voxel_size_m, int views) {
@@ -115,6 +119,7 @@ std::shared_ptr<Moment> moment_after(const RecordedRun& run, const std::string& 
     moment->builder->fold(run.images[static_cast<std::size_t>(view)]);
   }
   moment->space = std::make_unique<KnownSpace>(moment->builder->map(), KnownSpace::Surfaces::Keep);
+  moment->clear = std::make_unique<ClearSpace>(moment->builder->map(), FeasibilityParameters());
   moment->present = run.images[static_cast<std::size_t>(views) - 1].pose;
   return moment;
 }
@@ -186,14 +191,15 @@ void register_textbook_run(const std::string& scene, double voxel_size_m,
           for (std::size_t i = 0; i < run->images.size(); ++i) {
             const FoldReport& report = builder.fold(run->images[i]);
             space.update(report.changed_slots, report.updated_surfaces);
+            const ClearSpace clear(builder.map(), FeasibilityParameters());
             const TextbookCaster caster(builder.map(),
                                         prediction_reach(paper_raster(), voxel_size_m));
             SameWay same_way(std::make_shared<CastingViewPredictor<TextbookCaster>>(
                                  caster, paper_raster(), icosahedron_orientations()),
                              leader);
             const auto decide_now = [&] {
-              benchmark::DoNotOptimize(
-                  decide_after(space, run->images[i].pose, static_cast<int>(i) + 1, same_way));
+              benchmark::DoNotOptimize(decide_after(space, clear, run->images[i].pose,
+                                                    static_cast<int>(i) + 1, same_way));
             };
             decide_now();
             same_way.learn(false);
@@ -228,10 +234,12 @@ void compare_followed_map(const RecordedRun& run, double voxel_size_m, bool qual
   for (std::size_t i = 0; i < kViews; ++i) {
     const FoldReport& report = builder.fold(run.images[i]);
     followed.update(report.changed_slots, report.updated_surfaces);
+    const ClearSpace clear(builder.map(), FeasibilityParameters());
     const KnownSpace fresh(builder.map(), KnownSpace::Surfaces::Keep);
     const int views = static_cast<int>(i) + 1;
-    with_plain.compare(same_decision(decide_after(followed, run.images[i].pose, views, *fast),
-                                     decide_after(fresh, run.images[i].pose, views, plain)));
+    with_plain.compare(
+        same_decision(decide_after(followed, clear, run.images[i].pose, views, *fast),
+                      decide_after(fresh, clear, run.images[i].pose, views, plain)));
   }
 }
 

@@ -6,23 +6,6 @@
 
 namespace nextview {
 
-namespace {
-
-// The least squared distance, in whole voxels, that is not nearer than a length.
-int squared_voxels(double length_m, double voxel_size_m) {
-  const double voxels = length_m / voxel_size_m;
-  // 0.3 / 0.1 is a little below 3: a length of whole voxels must not lose one to rounding.
-  return static_cast<int>(std::ceil(voxels * voxels - 1e-6));
-}
-
-bool within_limits(const FeasibilityParameters& parameters, const Eigen::Vector3d& position_m) {
-  return (position_m.array() >= parameters.workspace_min_m.array()).all() &&
-         (position_m.array() <= parameters.workspace_max_m.array()).all() &&
-         position_m.z() >= parameters.lift_min_m && position_m.z() <= parameters.lift_max_m;
-}
-
-}  // namespace
-
 ClearSpace::ClearSpace(const VoxelMap& map, const FeasibilityParameters& parameters)
     : parameters_((parameters.check(), parameters)), grid_(map.grid()), window_(map.window()) {
   const double reach_m = std::max(parameters.clearance_m, parameters.body_radius_m);
@@ -30,8 +13,12 @@ ClearSpace::ClearSpace(const VoxelMap& map, const FeasibilityParameters& paramet
   const VoxelIndex sides = window_.size + VoxelIndex::Constant(2 * margin);
   first_ = window_.min - VoxelIndex::Constant(margin);
   stride_ = {1, sides[0], sides[0] * sides[1]};
-  near_ = steps_nearer_than(parameters.clearance_m);
-  body_ = steps_nearer_than(parameters.body_radius_m);
+  const VoxelNearness clearance(parameters.clearance_m, grid_.voxel_size_m);
+  near_ = steps_where(clearance.reach(),
+                      [&](const VoxelIndex& step) { return clearance.center_is_nearer(step); });
+  const VoxelNearness body(parameters.body_radius_m, grid_.voxel_size_m);
+  body_ =
+      steps_where(body.reach(), [&](const VoxelIndex& step) { return body.box_is_nearer(step); });
   if (near_.size() > kOccupiedMask || body_.size() > kUnknownMask / kUnknown) {
     throw std::invalid_argument(
         "clearance or body radius is too many voxels to plan paths with: choose larger voxels");
@@ -47,21 +34,20 @@ ClearSpace::ClearSpace(const VoxelMap& map, const FeasibilityParameters& paramet
       for (int i = window_.min[0]; i < end[0]; ++i) {
         const VoxelIndex index(i, j, k);
         const Cell cell = this->cell(index);
-        if (within_limits(parameters_, grid_.center_m(index))) against_[cell] &= ~kBeyondLimits;
+        if (parameters_.within_limits(grid_.center_m(index))) against_[cell] &= ~kBeyondLimits;
         change(cell, kind_of(map.label(index)));
       }
     }
   }
 }
 
-std::vector<int> ClearSpace::steps_nearer_than(double length_m) const {
-  const int limit = squared_voxels(length_m, grid_.voxel_size_m);
-  const int reach = static_cast<int>(std::ceil(std::sqrt(limit)));
+template <class IsNearer>
+std::vector<int> ClearSpace::steps_where(int reach, const IsNearer& is_nearer) const {
   std::vector<int> steps;
   for (int k = -reach; k <= reach; ++k) {
     for (int j = -reach; j <= reach; ++j) {
       for (int i = -reach; i <= reach; ++i) {
-        if (i * i + j * j + k * k < limit) steps.push_back(step({i, j, k}));
+        if (is_nearer(VoxelIndex(i, j, k))) steps.push_back(step({i, j, k}));
       }
     }
   }
@@ -109,7 +95,9 @@ std::vector<std::uint32_t> ClearSpace::update(const VoxelMap& map,
 
 void ClearSpace::block(const Eigen::Vector3d& center_m, double radius_m) {
   const Cell center = cell(grid_.voxel_of(center_m));
-  for (const int step : steps_nearer_than(std::min(radius_m, parameters_.clearance_m))) {
+  const VoxelNearness ball(std::min(radius_m, parameters_.clearance_m), grid_.voxel_size_m);
+  const auto is_inside = [&](const VoxelIndex& step) { return ball.center_is_nearer(step); };
+  for (const int step : steps_where(ball.reach(), is_inside)) {
     const Cell cell = center + static_cast<Cell>(step);
     against_[cell] |= kBlocked;
     blocked_.push_back(cell);

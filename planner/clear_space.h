@@ -13,9 +13,9 @@ namespace nextview {
 /// Every voxel of a map's window at which the robot may be (P19 and the body rule of
 /// feasibility.h), kept in step with the map.
 ///
-/// A voxel is clear when it is Empty, lies inside workspace and lift limits, has no Occupied voxel
-/// nearer than the clearance and no unknown one nearer than the body's radius, and is not blocked.
-/// For each voxel it is counted what speaks against it, in one word:
+/// A voxel is clear when it is Empty, lies inside workspace and lift limits, has no Occupied
+/// voxel's centre nearer than the clearance and no unknown one's box nearer than the body's radius,
+/// and is not blocked. For each voxel it is counted what speaks against it, in one word:
 ///
 ///     Occupied voxels within the clearance | unknown ones within the body | three reasons more
 ///
@@ -82,15 +82,16 @@ class ClearSpace {
 
   static Kind kind_of(Label label);
   bool change(Cell cell, Kind to);
-  std::vector<int> steps_nearer_than(double length_m) const;
+  template <class IsNearer>
+  std::vector<int> steps_where(int reach, const IsNearer& is_nearer) const;
 
   FeasibilityParameters parameters_;
   VoxelGrid grid_;
   MapWindow window_;
   VoxelIndex first_;       // of the cells
   VoxelIndex stride_;      // between cells along x, y, z
-  std::vector<int> near_;  // steps to all cells nearer than the clearance
-  std::vector<int> body_;  // and nearer than the body's radius
+  std::vector<int> near_;  // steps to all cells whose centre is nearer than the clearance
+  std::vector<int> body_;  // and to those whose box is nearer than the body's radius
   std::vector<Kind> kinds_;
   std::vector<std::uint32_t> against_;
   std::vector<Cell> blocked_;

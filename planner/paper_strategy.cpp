@@ -24,10 +24,36 @@ constexpr double kInfeasible = -std::numeric_limits<double>::infinity();
 /// costs little beside a prediction.
 constexpr int kInitialDraws = 200;
 
+/// Where the simplex may try positions.
+class FeasiblePositions {
+ public:
+  FeasiblePositions(const Situation& situation, ShortestPaths& paths,
+                    const FeasibilityParameters& parameters)
+      : situation_(situation), paths_(paths), parameters_(parameters) {}
+
+  bool reachable(const Eigen::Vector3d& position_m) {
+    if (!parameters_.within_limits(position_m) || !paths_.may_be_at(position_m)) return false;
+    const VoxelGrid& grid = situation_.space.map().grid();
+    const VoxelIndex voxel = grid.voxel_of(position_m);
+    for (const SensorPose& refused : situation_.refused) {
+      if (grid.voxel_of(refused.position_m) == voxel) return false;
+    }
+    // Most positions are straight ahead, and a search for all paths costs more than a prediction.
+    if (paths_.leads_straight_to(position_m)) return true;
+    paths_.find_all();
+    return paths_.length_m(voxel) != ShortestPaths::kUnreachable;
+  }
+
+ private:
+  const Situation& situation_;
+  ShortestPaths& paths_;
+  const FeasibilityParameters& parameters_;
+};
+
 /// The present position, and three positions each along a random ray inside a random face (P21).
 std::array<Eigen::Vector3d, 4> initial_vertices(const Eigen::Vector3d& present_m,
                                                 const PlannerParameters& parameters,
-                                                FeasibleSpace& space, RandomStream& random) {
+                                                FeasiblePositions& feasible, RandomStream& random) {
   const std::vector<SphereTriangle> faces = icosahedron_faces();
   std::array<Eigen::Vector3d, 4> vertices;
   vertices[0] = present_m;
@@ -38,7 +64,7 @@ std::array<Eigen::Vector3d, 4> initial_vertices(const Eigen::Vector3d& present_m
       const double distance_m = parameters.step_min_m +
                                 random.uniform() * (parameters.step_max_m - parameters.step_min_m);
       vertices[i] = present_m + distance_m * direction;
-      if (space.reachable(vertices[i])) break;
+      if (feasible.reachable(vertices[i])) break;
     }
   }
   return vertices;
@@ -55,13 +81,13 @@ std::string reason_of(const Decision& decision) {
 
 /// Where the search has led, which has found a feasible position.
 Decision decision_of(const SimplexResult& search, const ViewEvaluator& evaluator,
-                     const SensorPose& present) {
+                     const ShortestPaths& paths) {
   const std::vector<Orientation>& orientations = evaluator.orientations();
   Decision decision;
   const BestView& chosen = evaluator.at(search.best.position);
   const Orientation& orientation = orientations[chosen.orientation];
   decision.pose = {search.best.position, orientation.pan_rad, orientation.tilt_rad};
-  decision.waypoints_m = {present.position_m, search.best.position};
+  decision.waypoints_m = paths.waypoints_to_m(search.best.position);
   decision.fitness = chosen.fitness;
   decision.iterations = search.iterations;
   decision.evaluations = static_cast<int>(search.tried.size());
@@ -93,15 +119,15 @@ void PlannerParameters::check() const {
   feasibility.check();
 }
 
-std::optional<Decision> decide_by_simplex(const Situation& situation, ViewPredictor& predictor,
+std::optional<Decision> decide_by_simplex(const Situation& situation, ShortestPaths& paths,
+                                          ViewPredictor& predictor,
                                           const PlannerParameters& parameters) {
   parameters.check();
   if (parameters.use_quality && !predictor.counts_quality()) {
     throw std::invalid_argument("the view predictor does not count quality, but use_quality is on");
   }
   const SensorPose& present = situation.present;
-  FeasibleSpace feasible(situation.space.map(), parameters.feasibility, present.position_m,
-                         situation.refused, &situation.space.field());
+  FeasiblePositions feasible(situation, paths, parameters.feasibility);
   FactorWeights weights = {};
   if (parameters.use_quality) weights[kQualityFactor] = 1.0;
   ViewEvaluator evaluator(situation.space, predictor, weights, present);
@@ -128,7 +154,7 @@ std::optional<Decision> decide_by_simplex(const Situation& situation, ViewPredic
       maximise_by_simplex(initial_vertices(present.position_m, parameters, feasible, random),
                           values, parameters.fitness_tolerance, parameters.max_evaluations);
   if (search.best.value == kInfeasible) return std::nullopt;
-  return decision_of(search, evaluator, present);
+  return decision_of(search, evaluator, paths);
 }
 
 PaperStrategy::PaperStrategy(const PlannerParameters& search, const StopParameters& stop,
@@ -143,6 +169,8 @@ KnownSpace::Surfaces PaperStrategy::surfaces() const {
 }
 
 void PaperStrategy::view_folded(const FoldedView& folded) {
+  const std::vector<std::uint32_t>& changed = folded.report.changed_slots;
+  changed_slots_.insert(changed_slots_.end(), changed.begin(), changed.end());
   views_.push_back(
       view_facts(folded.report.newly_occupied, voxel_size_m_, folded.statistics.min_quality));
 }
@@ -153,8 +181,28 @@ std::optional<Ending> PaperStrategy::ending() const {
   return Ending{*reason, std::string(describe(*reason))};
 }
 
+void PaperStrategy::follow_map(const VoxelMap& map) {
+  if (!clear_ || clear_->window() != map.window()) {
+    clear_.emplace(map, search_.feasibility);
+    refused_.clear();
+  } else {
+    refused_.forget_near(*clear_, map, clear_->update(map, changed_slots_));
+  }
+  changed_slots_.clear();
+}
+
 NextView PaperStrategy::next_view(const Situation& situation) {
-  std::optional<Decision> decision = decide_by_simplex(situation, *predictor_, search_);
+  const VoxelMap& map = situation.space.map();
+  follow_map(map);
+  if (!situation.refused.empty()) refused_.add(*clear_, way_m_, situation.refused.size());
+  paths_.stand_at(*clear_, map, situation.present.position_m, search_.feasibility.departure_m);
+  NextView next = decided(situation);
+  if (const Decision* decision = std::get_if<Decision>(&next)) way_m_ = decision->waypoints_m;
+  return next;
+}
+
+NextView PaperStrategy::decided(const Situation& situation) {
+  std::optional<Decision> decision = decide_by_simplex(situation, paths_, *predictor_, search_);
   if (decision) return *std::move(decision);
   return Ending{StopReason::NoFeasibleGoal, "view " + std::to_string(situation.view) +
                                                 ": no position is feasible from the last one"};

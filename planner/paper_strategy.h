@@ -4,8 +4,11 @@
 #include <optional>
 #include <vector>
 
+#include "planner/clear_space.h"
 #include "planner/feasibility.h"
 #include "planner/prediction/view_predictor.h"
+#include "planner/refused_places.h"
+#include "planner/shortest_paths.h"
 #include "planner/strategy.h"
 #include "planner/termination.h"
 
@@ -26,13 +29,14 @@ struct PlannerParameters {
 
 /// Decides the next best view by hill climbing over positions with a simplex (P21), at each
 /// position exhaustively over the predictor's orientations (P20), as far as the known map lets the
-/// robot go (P19).
-/// @return nothing when no position is feasible; the refused goals and what lies near or behind
-/// them
-///         are left out
-/// @throws std::invalid_argument for parameters that cannot be, a present position outside the
-///         map's window, or a predictor that does not count the quality that is asked for
-std::optional<Decision> decide_by_simplex(const Situation& situation, ViewPredictor& predictor,
+/// robot go (P19): a position is feasible when a path leads there.
+/// @param paths stand at the present position; all of them are found when one is asked for that is
+///        not straight
+/// @return nothing when no position is feasible; the voxels of refused goals are not
+/// @throws std::invalid_argument for parameters that cannot be, or a predictor that does not count
+///         the quality that is asked for
+std::optional<Decision> decide_by_simplex(const Situation& situation, ShortestPaths& paths,
+                                          ViewPredictor& predictor,
                                           const PlannerParameters& parameters);
 
 /// The paper's method, section 5: the simplex, and the rules that end a run (P23).
@@ -51,11 +55,19 @@ class PaperStrategy : public Strategy {
   NextView next_view(const Situation& situation) override;
 
  private:
+  void follow_map(const VoxelMap& map);
+  NextView decided(const Situation& situation);
+
   PlannerParameters search_;
   StopParameters stop_;
   double voxel_size_m_;
   std::unique_ptr<ViewPredictor> predictor_;
-  std::vector<ViewFacts> views_;  // folded
+  std::vector<ViewFacts> views_;              // folded
+  std::vector<std::uint32_t> changed_slots_;  // folded, not yet followed
+  std::optional<ClearSpace> clear_;           // of the map's window
+  RefusedPlaces refused_;
+  ShortestPaths paths_;
+  std::vector<Eigen::Vector3d> way_m_;  // of the last decision
 };
 
 }  // namespace nextview

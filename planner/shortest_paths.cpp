@@ -41,8 +41,8 @@ constexpr std::uint32_t kBuckets = 2048;
 
 }  // namespace
 
-void ShortestPaths::find(const ClearSpace& space, const VoxelMap& map,
-                         const Eigen::Vector3d& present_m, double departure_m) {
+void ShortestPaths::stand_at(const ClearSpace& space, const VoxelMap& map,
+                             const Eigen::Vector3d& present_m, double departure_m) {
   const VoxelIndex present = space.grid().voxel_of(present_m);
   if (!space.window().contains(present)) {
     throw std::invalid_argument("the sensor stands outside the map's window");
@@ -55,8 +55,13 @@ void ShortestPaths::find(const ClearSpace& space, const VoxelMap& map,
   for (const Cell cell : exempted_) passage_[cell] = Passage::AsClear;
   exempted_.clear();
   reached_.clear();
+  found_all_ = false;
   exempt_around(map, present, departure_m);
-  spread(space.cell(present));
+}
+
+bool ShortestPaths::may_be_at(const Eigen::Vector3d& position_m) const {
+  const VoxelIndex voxel = space_->grid().voxel_of(position_m);
+  return space_->window().contains(voxel) && may_pass(space_->cell(voxel));
 }
 
 int ShortestPaths::nearest_occupied(const VoxelMap& map, const VoxelIndex& voxel, int limit) const {
@@ -79,26 +84,22 @@ void ShortestPaths::exempt_around(const VoxelMap& map, const VoxelIndex& present
                                   double departure_m) {
   const FeasibilityParameters& parameters = space_->parameters();
   const double voxel_m = space_->grid().voxel_size_m;
-  const auto squared = [&](double length_m) {
-    const double voxels = length_m / voxel_m;
-    return static_cast<int>(std::ceil(voxels * voxels - 1e-6));
-  };
-  const int clear = squared(parameters.clearance_m);
-  const int body = squared(parameters.body_radius_m);
-  const int departure = squared(departure_m);
-  const int body_reach = static_cast<int>(std::ceil(std::sqrt(body)));
+  const int clear = VoxelNearness(parameters.clearance_m, voxel_m).center_limit();
+  const VoxelNearness body(parameters.body_radius_m, voxel_m);
+  const VoxelNearness departure(departure_m, voxel_m);
+  const int body_reach = body.reach();
   // Beyond this no voxel can have an unknown one within the departure in its body.
-  const int reach = static_cast<int>(std::ceil(std::sqrt(departure))) + body_reach;
+  const int reach = departure.reach() + body_reach;
   const int at_present = nearest_occupied(map, present, clear);
   const auto unknown_near = [&](const VoxelIndex& voxel) {
     for (int k = -body_reach; k <= body_reach; ++k) {
       for (int j = -body_reach; j <= body_reach; ++j) {
         for (int i = -body_reach; i <= body_reach; ++i) {
           const VoxelIndex step(i, j, k);
-          if (step.squaredNorm() >= body) continue;
+          if (!body.box_is_nearer(step)) continue;
           const Label label = map.label(voxel + step);
           if (label == Label::Empty || label == Label::Occupied) continue;
-          if ((voxel + step - present).squaredNorm() >= departure) return true;
+          if (!departure.center_is_nearer(voxel + step - present)) return true;
         }
       }
     }
@@ -126,7 +127,10 @@ void ShortestPaths::exempt_around(const VoxelMap& map, const VoxelIndex& present
   }
 }
 
-void ShortestPaths::spread(Cell start) {
+void ShortestPaths::find_all() {
+  if (found_all_) return;
+  found_all_ = true;
+  const Cell start = space_->cell(space_->grid().voxel_of(present_m_));
   std::array<int, 26> step;
   for (std::size_t d = 0; d < step.size(); ++d) step[d] = space_->step(directions()[d].by);
   buckets_.resize(kBuckets);
@@ -174,8 +178,9 @@ bool ShortestPaths::straight_is_clear(const Eigen::Vector3d& from_m,
   return true;
 }
 
-std::vector<Eigen::Vector3d> ShortestPaths::waypoints_m(const VoxelIndex& voxel) const {
-  std::vector<Eigen::Vector3d> path = {space_->grid().center_m(voxel)};
+std::vector<Eigen::Vector3d> ShortestPaths::waypoints_m(const VoxelIndex& voxel,
+                                                        const Eigen::Vector3d& end_m) const {
+  std::vector<Eigen::Vector3d> path = {end_m};
   for (Cell cell = space_->cell(voxel); arrived_[cell] != kStart;) {
     cell -= static_cast<Cell>(space_->step(directions()[arrived_[cell]].by));
     path.push_back(space_->grid().center_m(space_->index(cell)));

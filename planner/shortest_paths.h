@@ -24,11 +24,28 @@ class ShortestPaths {
  public:
   static constexpr double kUnreachable = std::numeric_limits<double>::infinity();
 
-  /// Finds them all, by Dijkstra's method; to be called again whenever the space has changed.
+  /// Stands at a position, from which no path is known yet but the straight ones; to be called
+  /// again whenever the space has changed. Space and map must stay as they are until then.
   /// @param departure_m unknown voxels nearer to the present one do not count
   /// @throws std::invalid_argument when the present position lies outside the window
+  void stand_at(const ClearSpace& space, const VoxelMap& map, const Eigen::Vector3d& present_m,
+                double departure_m);
+  /// Finds the paths to all positions from where it stands, by Dijkstra's method, unless it has.
+  void find_all();
+  /// Both.
   void find(const ClearSpace& space, const VoxelMap& map, const Eigen::Vector3d& present_m,
-            double departure_m);
+            double departure_m) {
+    stand_at(space, map, present_m, departure_m);
+    find_all();
+  }
+
+  /// Whether the robot may be at a position, if a path leads there.
+  bool may_be_at(const Eigen::Vector3d& position_m) const;
+  /// Whether the straight path from where it stands to such a position is clear. The answer does
+  /// not need the others to have been found.
+  bool leads_straight_to(const Eigen::Vector3d& position_m) const {
+    return straight_is_clear(present_m_, position_m);
+  }
 
   /// The length of the path to a voxel, or kUnreachable.
   double length_m(const VoxelIndex& voxel) const;
@@ -37,7 +54,14 @@ class ShortestPaths {
 
   /// The path to a voxel that has one: the present position, the corners, the voxel's centre. Of
   /// the voxels between two of them, which a straight piece leads through, each may be passed.
-  std::vector<Eigen::Vector3d> waypoints_m(const VoxelIndex& voxel) const;
+  std::vector<Eigen::Vector3d> waypoints_m(const VoxelIndex& voxel) const {
+    return waypoints_m(voxel, space_->grid().center_m(voxel));
+  }
+  /// The same to a position straight ahead, or in a voxel that has a path.
+  std::vector<Eigen::Vector3d> waypoints_to_m(const Eigen::Vector3d& position_m) const {
+    if (leads_straight_to(position_m)) return {present_m_, position_m};
+    return waypoints_m(space_->grid().voxel_of(position_m), position_m);
+  }
 
  private:
   using Cell = ClearSpace::Cell;
@@ -59,7 +83,8 @@ class ShortestPaths {
     return may_pass(to) &&
            (passage_[to] != Passage::Departing || passage_[from] == Passage::Departing);
   }
-  void spread(Cell start);
+  std::vector<Eigen::Vector3d> waypoints_m(const VoxelIndex& voxel,
+                                           const Eigen::Vector3d& end_m) const;
   bool straight_is_clear(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m) const;
 
   const ClearSpace* space_ = nullptr;
@@ -68,6 +93,7 @@ class ShortestPaths {
   std::vector<std::uint8_t> arrived_;   // by cell: the direction of the last step there
   std::vector<Passage> passage_;        // by cell
   std::vector<Cell> exempted_;
+  bool found_all_ = false;
   std::vector<VoxelIndex> reached_;
   std::vector<std::vector<Cell>> buckets_;  // cells still to be left, by length
 };

@@ -162,12 +162,13 @@ void add_base_options(CLI::App& app, RunOptions& options) {
       ->capture_default_str()
       ->group(group);
   app.add_option("--lift-min", options.lift_min_m,
-                 "Lowest z of the sensor, m; default: the scene's lowest + body radius")
+                 "Lowest z of the sensor, m; default: the floor under the start + body radius")
       ->check(number_within(bounds::kLift))
       ->group(group);
-  app.add_option("--lift-max", options.lift_max_m,
-                 "Highest z of the sensor, m; default: the scene's highest - body radius, at most "
-                 "2.8 m above its lowest")
+  app.add_option(
+         "--lift-max", options.lift_max_m,
+         "Highest z of the sensor, m; default: 2.8 m above the floor under the start, at most "
+         "the scene's highest - body radius; more for several storeys")
       ->check(number_within(bounds::kLift))
       ->group(group);
   app.add_option("--base-speed", options.base_speed_m_s, "m/s")

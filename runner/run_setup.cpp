@@ -82,14 +82,24 @@ void fill_sensor(run_config_t& config, const RunOptions& options) {
   config.sensor.scan_duration_s = options.scan_duration_s;
 }
 
-void fill_base(run_config_t& config, const RunOptions& options, const Eigen::AlignedBox3d& bounds) {
-  constexpr double kReach_m = 2.8;  // of the lift, above the lowest floor
+/// The height of what is straight under the start, where the robot stands; of the scene's lowest
+/// point when there is nothing, and of the workspace's when there is no scene.
+double floor_under_start_m(const run_config_t& config, const Scene* scene,
+                           const Eigen::AlignedBox3d& bounds) {
+  const Eigen::Vector3d start_m(config.base.start_m);
+  const auto below =
+      scene == nullptr ? std::nullopt : scene->first_hit(start_m, -Eigen::Vector3d::UnitZ());
+  return below ? start_m.z() - double{below->distance_m} : bounds.min().z();
+}
+
+void fill_base(run_config_t& config, const RunOptions& options, const Eigen::AlignedBox3d& bounds,
+               double floor_m) {
+  constexpr double kReach_m = 2.8;  // of the lift, above the floor
   config.base.body_radius_m = options.body_radius_m;
   for (int axis = 0; axis < 3; ++axis) {
     config.base.workspace_min_m[axis] = bounds.min()[axis];
     config.base.workspace_max_m[axis] = bounds.max()[axis];
   }
-  const double floor_m = bounds.min().z();
   config.base.lift_min_m = options.lift_min_m.value_or(floor_m + options.body_radius_m);
   config.base.lift_max_m = options.lift_max_m.value_or(
       std::min(bounds.max().z() - options.body_radius_m, floor_m + kReach_m));
@@ -158,10 +168,21 @@ void fill_planner(run_config_t& config, const RunOptions& options) {
   config.planner.stop_new_area_m2 = options.stop_new_area_m2;
 }
 
+std::string lift_in_words(const run_config_t& config, double floor_m) {
+  return "the floor under the start is at " + two_decimals(floor_m) +
+         " m; the lift moves the sensor from " + two_decimals(config.base.lift_min_m) + " to " +
+         two_decimals(config.base.lift_max_m) + " m (--lift-min, --lift-max)";
+}
+
 /// The start must be a place where the base can be, and at the planner's clearance, or nothing
 /// could be planned from it.
-void check_start(const run_config_t& config, const Scene& scene) {
+void check_start(const run_config_t& config, double floor_m, const Scene& scene) {
   const SensorPose start = start_pose_of(config);
+  const double height_m = start.position_m.z();
+  if (height_m < config.base.lift_min_m || height_m > config.base.lift_max_m) {
+    throw SetupError("--start: a height of " + two_decimals(height_m) +
+                     " m is beyond the lift: " + lift_in_words(config, floor_m));
+  }
   try {
     const Base base(base_limits_of(config), start, scene);
   } catch (const std::invalid_argument& error) {
@@ -178,20 +199,24 @@ void check_start(const run_config_t& config, const Scene& scene) {
 }
 
 /// What does not depend on where the scene comes from.
-void fill_rest(run_config_t& config, const RunOptions& options, const SceneDescription& description,
-               const Eigen::AlignedBox3d& bounds) {
+/// @return the height of the floor under the start
+double fill_rest(run_config_t& config, const RunOptions& options,
+                 const SceneDescription& description, const Scene* scene,
+                 const Eigen::AlignedBox3d& bounds) {
   config.seed = options.seed;
   config.scene_name = description.name;
   config.program_version = program_version();
   config.strategy = options.strategy;
   fill_start(config, options, description, bounds);
   fill_sensor(config, options);
-  fill_base(config, options, bounds);
+  const double floor_m = floor_under_start_m(config, scene, bounds);
+  fill_base(config, options, bounds, floor_m);
   fill_map(config, options, bounds);
   fill_planner(config, options);
   if (const std::string reason = check(config); !reason.empty()) {
     throw SetupError("the configuration cannot be right: " + reason);
   }
+  return floor_m;
 }
 
 RunSetup prepare_in_scene(const RunOptions& options) {
@@ -210,10 +235,10 @@ RunSetup prepare_in_scene(const RunOptions& options) {
   config.scene.unit_m = description.options.unit_m.value_or(0.0);
   if (description.options.up) config.scene_up = name_of(*description.options.up);
   config.scene_digest = mesh_digest(mesh);
-  fill_rest(config, options, description, bounds);
-
   setup.scene = std::make_shared<const Scene>(std::move(mesh));
-  check_start(config, *setup.scene);
+  const double floor_m = fill_rest(config, options, description, setup.scene.get(), bounds);
+  check_start(config, floor_m, *setup.scene);
+  setup.notes.push_back(lift_in_words(config, floor_m));
   const double escape = escape_share(*setup.scene, start_pose_of(config).position_m);
   if (escape > 0.0) {
     setup.warnings.push_back(
@@ -242,7 +267,7 @@ RunSetup prepare_without_scene(const RunOptions& options) {
   SceneDescription description;
   description.name = "robot";
   RunSetup setup;
-  fill_rest(setup.config, options, description, bounds);
+  fill_rest(setup.config, options, description, nullptr, bounds);
   const base_config_t& base = setup.config.base;
   if (!bounds.contains(Eigen::Vector3d(base.start_m)) || base.start_m[2] < base.lift_min_m ||
       base.start_m[2] > base.lift_max_m) {

@@ -23,6 +23,7 @@ class SetupError : public std::runtime_error {
 struct RunSetup {
   run_config_t config{};               ///< without the run's number
   std::shared_ptr<const Scene> scene;  ///< for the scoring only; null when there is none
+  std::vector<std::string> notes;      ///< for the user: what was worked out for the run
   std::vector<std::string> warnings;   ///< for the user
 };
 

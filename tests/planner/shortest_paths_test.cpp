@@ -17,10 +17,10 @@ using Eigen::Vector3d;
 
 class Paths : public ::testing::Test {
  protected:
-  // Clearance and body of one voxel: only the voxels themselves are in the way.
+  // Clearance of one voxel, body of half a voxel: only the voxels themselves are in the way.
   Paths() {
     parameters.clearance_m = 0.1;
-    parameters.body_radius_m = 0.1;
+    parameters.body_radius_m = 0.05;
   }
 
   static VoxelMap empty_map(const VoxelIndex& size) {
@@ -152,9 +152,10 @@ TEST_F(Paths, KeepTheClearanceAndTheBody) {
   EXPECT_EQ(paths.length_m({17, 15, 15}), ShortestPaths::kUnreachable);  // 3 voxels away
   EXPECT_LT(paths.length_m({16, 15, 15}), 2.0);                          // 4
   EXPECT_EQ(paths.length_m({6, 16, 15}), ShortestPaths::kUnreachable);   // sqrt 2
-  EXPECT_LT(paths.length_m({7, 15, 15}), 2.0);                           // 2
-  EXPECT_EQ(paths.length_m({0, 15, 15}), ShortestPaths::kUnreachable);   // the window's rim
-  EXPECT_LT(paths.length_m({1, 15, 15}), 2.0);
+  EXPECT_EQ(paths.length_m({7, 15, 15}), ShortestPaths::kUnreachable);   // 2, its box 1.5
+  EXPECT_LT(paths.length_m({8, 15, 15}), 2.0);                           // 3, its box 2.5
+  EXPECT_EQ(paths.length_m({1, 15, 15}), ShortestPaths::kUnreachable);   // the window's rim
+  EXPECT_LT(paths.length_m({2, 15, 15}), 2.0);
 }
 
 TEST_F(Paths, DepartFromUnknownSurroundings) {
@@ -196,6 +197,21 @@ TEST_F(Paths, KeepToWorkspaceAndLift) {
   EXPECT_EQ(paths.length_m({5, 10, 11}), ShortestPaths::kUnreachable);
 }
 
+// Two storeys with a stairwell between them: the lift decides how far up the robot gets.
+TEST_F(Paths, LeadToAnotherStoreyWhereTheLiftAllows) {
+  VoxelMap map = empty_map({20, 20, 60});
+  fill(map, {0, 0, 28}, {20, 20, 31}, Label::Occupied);
+  fill(map, {12, 12, 28}, {18, 18, 31}, Label::Empty);
+  parameters.lift_max_m = 2.85;
+  find(map, {5, 5, 12});
+  EXPECT_EQ(paths.length_m({5, 5, 40}), ShortestPaths::kUnreachable);
+  EXPECT_LT(paths.length_m({15, 15, 27}), 3.0);
+  parameters.lift_max_m = 5.0;
+  find(map, {5, 5, 12});
+  EXPECT_GT(paths.length_m({5, 5, 40}), 3.0);
+  EXPECT_LT(paths.length_m({5, 5, 40}), 5.0);
+}
+
 TEST_F(Paths, KeepOutOfWhatIsBlocked) {
   const VoxelMap map = empty_map({20, 20, 5});
   ClearSpace space(map, parameters);
@@ -221,10 +237,10 @@ TEST(ClearSpace, FollowsTheMapAsIfMadeAnew) {
       const VoxelIndex voxel = map.window().min + VoxelIndex(static_cast<int>(random() % 14),
                                                              static_cast<int>(random() % 12),
                                                              static_cast<int>(random() % 10));
-      const auto draw = static_cast<int>(random() % 100);
-      const Label label = draw < 96   ? Label::Empty
-                          : draw < 98 ? Label::Occupied
-                                      : Label::OcclusionPlane;
+      const auto draw = static_cast<int>(random() % 200);
+      const Label label = draw < 196   ? Label::Empty
+                          : draw < 199 ? Label::Occupied
+                                       : Label::OcclusionPlane;
       map.set_label(voxel, label);
       changed.push_back(static_cast<std::uint32_t>(map.slot(voxel)));
     }

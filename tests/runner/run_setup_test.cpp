@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <fstream>
 #include <numbers>
+#include <sstream>
+#include <string>
 
 #include "lcmtypes/validate.h"
 
@@ -84,6 +87,71 @@ TEST(RunSetup, LeavesUnitAndAxisToTheFileUnlessTheyAreGiven) {
   const run_config_t config = prepare_run(options).config;
   EXPECT_EQ(config.scene.unit_m, 1.0);
   EXPECT_EQ(config.scene_up, "z");
+}
+
+// A room of 4 x 4 x 3 m on a footing 1.5 m deep, as an OBJ file.
+std::string room_on_a_footing() {
+  const auto file = std::filesystem::path(::testing::TempDir()) / "room_on_a_footing.obj";
+  std::ofstream obj(file);
+  int vertices = 0;
+  const auto box = [&](double x0, double y0, double z0, double x1, double y1, double z1) {
+    for (int corner = 0; corner < 8; ++corner) {
+      obj << "v " << ((corner & 1) != 0 ? x1 : x0) << ' ' << ((corner & 2) != 0 ? y1 : y0) << ' '
+          << ((corner & 4) != 0 ? z1 : z0) << '\n';
+    }
+    for (const auto& face : {"1 2 4 3", "5 6 8 7", "1 2 6 5", "3 4 8 7", "1 3 7 5", "2 4 8 6"}) {
+      std::istringstream corners(face);
+      obj << 'f';
+      for (int corner = 0; corners >> corner;) obj << ' ' << vertices + corner;
+      obj << '\n';
+    }
+    vertices += 8;
+  };
+  box(0.0, 0.0, 0.0, 4.0, 4.0, 3.0);
+  box(1.5, 1.5, -1.55, 2.5, 2.5, 0.0);
+  return file.string();
+}
+
+RunOptions in_room_on_a_footing() {
+  RunOptions options;
+  options.scene = room_on_a_footing();
+  options.unit.emplace("m");
+  options.up.emplace("z");
+  options.start_m = {0.8, 0.8, 1.2};
+  return options;
+}
+
+// A footing is not what the robot stands on.
+TEST(RunSetup, TakesTheLiftFromTheFloorUnderTheStart) {
+  const RunSetup setup = prepare_run(in_room_on_a_footing());
+  EXPECT_NEAR(setup.config.base.lift_min_m, 0.2, 1e-6);
+  EXPECT_NEAR(setup.config.base.lift_max_m, 2.8, 1e-6);
+  EXPECT_NEAR(setup.config.base.workspace_min_m[2], -1.55, 1e-6);
+  ASSERT_EQ(setup.notes.size(), 1U);
+  EXPECT_NE(setup.notes[0].find("0.20 to 2.80 m (--lift-min, --lift-max)"), std::string::npos)
+      << setup.notes[0];
+  RunOptions higher = in_room_on_a_footing();
+  higher.lift_min_m = 1.0;
+  higher.lift_max_m = 2.5;
+  EXPECT_EQ(prepare_run(higher).config.base.lift_min_m, 1.0);
+  EXPECT_EQ(prepare_run(higher).config.base.lift_max_m, 2.5);
+}
+
+TEST(RunSetup, NamesTheLiftWhenTheStartIsBeyondIt) {
+  for (const double height_m : {1.2, 0.1}) {
+    RunOptions options = in_room_on_a_footing();
+    options.start_m[2] = height_m;
+    if (height_m > 1.0) options.lift_min_m = 1.5;
+    try {
+      prepare_run(options);
+      FAIL() << "no error at " << height_m;
+    } catch (const SetupError& error) {
+      const std::string message = error.what();
+      for (const char* part : {"--start", "--lift-min", "--lift-max", "floor", "0.00 m"}) {
+        EXPECT_NE(message.find(part), std::string::npos) << message;
+      }
+    }
+  }
 }
 
 TEST(RunSetup, ScoresWhereTheRobotMayBe) {
