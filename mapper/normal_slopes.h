@@ -123,15 +123,12 @@ struct PointNormal {
 };
 
 /// The normal from w and its slopes at ray angles a, b; all zero when any of them is NaN.
-/// @param r world_from_sensor
-inline PointNormal point_normal(float w, float slope_a, float slope_b, float sin_a, float cos_a,
-                                float sin_b, float cos_b, const float (&r)[3][3]) {
-  // m in the frame of the row: x, along the row's plane, and across it.
-  const float across = slope_b / cos_a;
-  const float along = cos_a * w - sin_a * slope_a;
-  const float x = -(sin_a * w) - cos_a * slope_a;
-  const float y = along * cos_b - across * sin_b;
-  const float z = along * sin_b + across * cos_b;
+/// @param ray of the pixel
+/// @param r   world_from_lines
+inline PointNormal point_normal(float w, float slope_a, float slope_b, const RayFrame<float>& ray,
+                                const float (&r)[3][3]) {
+  const float across = slope_b / ray.cos_a;
+  const auto [x, y, z] = ray.vector(w, slope_a, across);  // m
   const float length = std::sqrt(w * w + slope_a * slope_a + across * across);
   const bool valid = (length > 0.0f) & (length < 1e15f);
   const float inverse = 1.0f / select(valid, length, 1.0f);

@@ -109,7 +109,7 @@ void normals_of_row(int columns, RowView w, RowView d, RowView bend,
     const float slope_b = choose_slope(slope_p, slope_n, bend.here[u], bend.previous[u],
                                        bend.next[u], step_p, step_n);
     const PointNormal normal =
-        point_normal(w.here[u], slope_a[u], slope_b, sin_a[u], cos_a[u], sin_b, cos_b, rotation);
+        point_normal(w.here[u], slope_a[u], slope_b, {sin_a[u], cos_a[u], sin_b, cos_b}, rotation);
     normals.x[u] = normal.x;
     normals.y[u] = normal.y;
     normals.z[u] = normal.z;
@@ -182,10 +182,9 @@ void NormalEstimator::prepare(const RangeImage& image) {
   column_cos_ = to_float(rays.column_cos);
   row_sin_ = to_float(rays.row_sin);
   row_cos_ = to_float(rays.row_cos);
+  const Eigen::Matrix3d world_from_lines = rays.world_from_lines(image.world_from_sensor);
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) {
-      rotation_[i][j] = static_cast<float>(image.world_from_sensor(i, j));
-    }
+    for (int j = 0; j < 3; ++j) rotation_[i][j] = static_cast<float>(world_from_lines(i, j));
   }
   resize(rays.columns(), rays.rows());
 }

@@ -22,10 +22,10 @@ struct NormalRow {
 /// Estimates the surface normal at every point of a range image from its neighbours in the image
 /// (P9): exact on planes, up to the quantisation of the ranges.
 ///
-/// On a plane { p : m . p = 1 } (sensor frame) the inverse range w is linear in the ray:
-/// w = m . n(a, b), with n = (-sin a, cos a cos b, cos a sin b) the ray of eq. 5 at column angle a
-/// and row angle b. n, n_a = dn/da and e_b = (0, -sin b, cos b) are orthonormal and
-/// dn/db = cos a e_b, so w and its two derivatives give the plane:
+/// On a plane { p : m . p = 1 } (line frame) the inverse range w is linear in the ray:
+/// w = m . n(a, b), with n the ray at column angle a and row angle b (ray_table.h). n, n_a = dn/da
+/// and e_b = (dn/db) / cos a are orthonormal (RayFrame), so w and its two derivatives give the
+/// plane:
 ///
 ///     m = w n + w_a n_a + (w_b / cos a) e_b,    normal = -m / |m| towards the sensor,
 ///     |cos(normal, ray)| = w / |m|.
@@ -103,7 +103,7 @@ class NormalEstimator {
   Axis column_axis_;    ///< from column to column
   Axis row_axis_;       ///< from row to row
   std::vector<float> column_sin_, column_cos_, row_sin_, row_cos_;
-  float rotation_[3][3] = {};
+  float rotation_[3][3] = {};    ///< world_from_lines
   PaddedRows range_;             ///< metres; NaN where there is no point
   PaddedRows inverse_range_;     ///< w
   PaddedRows slope_;             ///< w_a as chosen

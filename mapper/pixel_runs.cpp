@@ -1,5 +1,7 @@
 #include "mapper/pixel_runs.h"
 
+#include <algorithm>
+
 // Highway compiles the rest of this file once for every instruction set.
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "mapper/pixel_runs.cpp"
@@ -16,7 +18,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 // Most runs are shorter than nine pixels.
 using Tag = hn::CappedTag<std::int32_t, 8>;
 using Vector = hn::Vec<Tag>;
-using WideTag = hn::CappedTag<std::int32_t, NormalRow::kPadding>;
+using WideTag = hn::CappedTag<std::int32_t, std::min(NormalRow::kPadding, EndRow::kPadding)>;
 
 // The columns at which runs begin; returns how many.
 std::size_t FindBegins(int columns, const RowEnds& ends, std::int32_t* begins) {

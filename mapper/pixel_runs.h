@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mapper/normals.h"
+#include "mapper/row_ends.h"
 
 namespace nextview {
 
@@ -17,16 +18,8 @@ struct PixelRun {
   std::int32_t quality;        ///< the best
 };
 
-/// Where the rays of a row end, by column, from column -1 on (whatever stands there) to
-/// NormalRow::kPadding beyond the last.
-struct RowEnds {
-  const std::int32_t* voxel[3];
-  const std::int32_t* kind;   ///< pixels of different kinds share no run
-  const std::int32_t* limit;  ///< where they leave the window; no matter to runs
-};
-
 /// The runs of a row, each as long as it can be, but none across a multiple of 65536 columns, so
-/// that sums fit.
+/// that sums fit. Pixels of different kinds share no run; where rays leave the window is no matter.
 class PixelRuns {
  public:
   /// @return the runs from left to right; valid until the next call

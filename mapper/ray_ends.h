@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -9,14 +8,11 @@
 #include "mapper/key_numbers.h"
 #include "mapper/normals.h"
 #include "mapper/pixel_runs.h"
+#include "mapper/row_ends.h"
 #include "mapper/voxel_map.h"
 #include "sensor/range_image.h"
 
 namespace nextview {
-
-/// No point is sought farther away than this many voxels, nor a range without return believed: it
-/// is far outside any window, and a voxel line can still be drawn towards it.
-constexpr double kFarthestVoxels = 16384.0;
 
 /// A voxel in which rays of a range image end. Rays from the same sensor to the same voxel are the
 /// same voxel line, so one entry stands for all of them.
@@ -41,7 +37,7 @@ struct PixelCounts {
   std::int64_t invalid = 0;         ///< RangeKind::Invalid: says nothing
 };
 
-/// Collects where the rays of an image end: eq. 1 and 2 for every pixel, its normal and quality.
+/// Collects where the rays of an image end, with the normal and quality of every point.
 /// One object serves many images, to reuse its memory.
 class RayEnds {
  public:
@@ -56,26 +52,15 @@ class RayEnds {
   std::size_t memory_bytes() const;
 
  private:
-  /// Of a row of pixels, from column -1 on: where each ray ends, why there, and where it leaves the
-  /// window, as a number among the window's voxels, x fastest.
-  struct Row {
-    void resize(std::size_t columns);
-    RowEnds ends() const;
-    std::array<std::vector<std::int32_t>, 3> end;
-    std::vector<std::int32_t> kind;  ///< RangeKind
-    std::vector<std::int32_t> limit;
-  };
-
-  void find_ends(const RangeImage& image, const VoxelGrid& grid, const MapWindow& window, int v);
   void add_run(const PixelRun& run, const MapWindow& window);
   RayEnd& end_of(const PixelRun& run, const VoxelIndex& voxel, bool is_surface);
   std::uint32_t number_of(const VoxelIndex& voxel, bool is_surface);
-  void add_shadow(std::int32_t column, const MapWindow& window);
+  void add_shadow(int column, const RowEndFinder& finder);
 
   VoxelIndex sensor_;
   NormalEstimator normals_;
   NormalRow normal_row_;
-  Row row_, row_above_;
+  EndRow row_, row_above_;
   PixelRuns runs_;
   std::vector<RayEnd> ends_;
   /// By column, a number in ends_ that the pixel above, or here, is likely to end at.

@@ -7,22 +7,18 @@
 
 #include "mapper/image_check.h"
 #include "mapper/integer_line.h"
-#include "mapper/ray_ends.h"
+#include "mapper/row_ends.h"
 #include "mapper/window_limit.h"
 
 namespace nextview {
 
 namespace {
 
-// The direction of a pixel's ray in the world frame (eq. 1), its products written out in one order.
+// The direction of a pixel's ray in the world frame (eq. 1).
 Eigen::Vector3d direction_of(const RangeImage& image, int u, int v) {
-  const Eigen::Vector3d n = image.rays.ray(u, v);
-  const Eigen::Matrix3d& r = image.world_from_sensor;
-  Eigen::Vector3d direction;
-  for (int axis = 0; axis < 3; ++axis) {
-    direction[axis] = r(axis, 0) * n[0] + r(axis, 1) * n[1] + r(axis, 2) * n[2];
-  }
-  return direction;
+  const auto column = static_cast<std::size_t>(u);
+  return image.rays.row(v, image.rays.world_from_lines(image.world_from_sensor))
+      .ray(image.rays.column_sin[column], image.rays.column_cos[column]);
 }
 
 }  // namespace
@@ -254,15 +250,16 @@ class PixelNeighbourhood {
 
 PointNormal reference_normal(const RangeImage& image, int u, int v) {
   const PixelNeighbourhood pixels(image);
+  const Eigen::Matrix3d world_from_lines = image.rays.world_from_lines(image.world_from_sensor);
   float rotation[3][3];
   for (int i = 0; i < 3; ++i) {
-    for (int j = 0; j < 3; ++j) rotation[i][j] = static_cast<float>(image.world_from_sensor(i, j));
+    for (int j = 0; j < 3; ++j) rotation[i][j] = static_cast<float>(world_from_lines(i, j));
   }
+  const float sin_b = static_cast<float>(image.rays.row_sin[static_cast<std::size_t>(v)]);
+  const float cos_b = static_cast<float>(image.rays.row_cos[static_cast<std::size_t>(v)]);
   return point_normal(pixels.w(u, v), pixels.chosen_row_slope(u, v),
-                      pixels.chosen_column_slope(u, v), pixels.column_sin(u), pixels.column_cos(u),
-                      static_cast<float>(image.rays.row_sin[static_cast<std::size_t>(v)]),
-                      static_cast<float>(image.rays.row_cos[static_cast<std::size_t>(v)]),
-                      rotation);
+                      pixels.chosen_column_slope(u, v),
+                      {pixels.column_sin(u), pixels.column_cos(u), sin_b, cos_b}, rotation);
 }
 
 }  // namespace nextview

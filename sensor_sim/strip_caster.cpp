@@ -1,6 +1,7 @@
 #include "sensor_sim/strip_caster.h"
 
 #include <algorithm>
+#include <array>
 
 #include "sensor/vector_clones.h"
 
@@ -11,29 +12,24 @@ constexpr int kTileRows = StripCaster::kRows;
 constexpr int kTileColumns = Scene::kPacketSize / kTileRows;
 static_assert(kTileColumns * kTileRows == Scene::kPacketSize);
 
-// One coordinate of the directions of a strip.
-struct AxisOfRays {
-  double right;                // of the sensor's x axis
-  double row_axis[kTileRows];  // of Rx(beta_v) y for each row
-};
+// The rows of a strip, by coordinate.
+using StripRows = std::array<std::array<RayRow::Along, kTileRows>, 3>;
 
-// world_from_sensor · n_uv (eq. 1 and 5), the part common to a row taken out:
-// n_uv = cos(alpha_u) Rx(beta_v) y - sin(alpha_u) x.
 NEXTVIEW_VECTOR_CLONES
 void point_rays(std::size_t tiles, const double* __restrict column_sin,
-                const double* __restrict column_cos, const AxisOfRays* axis,
+                const double* __restrict column_cos, const StripRows& rows,
                 Scene::Directions* __restrict directions) {
   for (std::size_t tile = 0; tile < tiles; ++tile) {
     const double* sine = column_sin + tile * kTileColumns;
     const double* cosine = column_cos + tile * kTileColumns;
     float* lanes[] = {directions[tile].x.data(), directions[tile].y.data(),
                       directions[tile].z.data()};
-    for (int k = 0; k < 3; ++k) {
+    for (std::size_t k = 0; k < 3; ++k) {
       for (int j = 0; j < kTileRows; ++j) {
+        const RayRow::Along row = rows[k][static_cast<std::size_t>(j)];
 #pragma omp simd
         for (int i = 0; i < kTileColumns; ++i) {
-          lanes[k][j * kTileColumns + i] =
-              static_cast<float>(cosine[i] * axis[k].row_axis[j] - sine[i] * axis[k].right);
+          lanes[k][j * kTileColumns + i] = static_cast<float>(row.ray(sine[i], cosine[i]));
         }
       }
     }
@@ -47,7 +43,7 @@ StripCaster::StripCaster(const Scene& scene, const RayTable& rays,
                          const Eigen::Vector3d& position_m)
     : scene_(scene),
       rays_(rays),
-      world_from_sensor_(world_from_sensor),
+      world_from_lines_(rays.world_from_lines(world_from_sensor)),
       origin_m_(position_m.cast<float>()),
       column_sin_(rays.column_sin),
       column_cos_(rays.column_cos),
@@ -64,16 +60,14 @@ std::size_t StripCaster::pixels(int first_row) const {
 }
 
 void StripCaster::cast(int first_row, std::span<float> distance_m) {
-  AxisOfRays axis[3];
-  for (int k = 0; k < 3; ++k) {
-    axis[k].right = world_from_sensor_(k, 0);
-    for (int j = 0; j < kTileRows; ++j) {
-      const auto row = static_cast<std::size_t>(std::min(first_row + j, rays_.rows() - 1));
-      axis[k].row_axis[j] = rays_.row_cos[row] * world_from_sensor_(k, 1) +
-                            rays_.row_sin[row] * world_from_sensor_(k, 2);
+  StripRows strip;
+  for (int j = 0; j < kTileRows; ++j) {
+    const RayRow row = rays_.row(std::min(first_row + j, rays_.rows() - 1), world_from_lines_);
+    for (int k = 0; k < 3; ++k) {
+      strip[static_cast<std::size_t>(k)][static_cast<std::size_t>(j)] = row.along(k);
     }
   }
-  point_rays(directions_.size(), column_sin_.data(), column_cos_.data(), axis, directions_.data());
+  point_rays(directions_.size(), column_sin_.data(), column_cos_.data(), strip, directions_.data());
   scene_.cast(origin_m_, directions_, distances_);
 
   const auto columns = static_cast<std::size_t>(rays_.columns());

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "scene/scene.h"
-#include "sensor/sensor_geometry.h"
+#include "sensor/ray_table.h"
 
 namespace nextview {
 
@@ -32,7 +32,7 @@ class StripCaster {
 
   const Scene& scene_;
   const RayTable& rays_;
-  Eigen::Matrix3d world_from_sensor_;
+  Eigen::Matrix3d world_from_lines_;
   Eigen::Vector3f origin_m_;
   std::vector<double> column_sin_;  // of the ray table, the last one repeated to fill the last tile
   std::vector<double> column_cos_;
