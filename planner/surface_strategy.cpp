@@ -229,7 +229,7 @@ Decision SurfaceStrategy::decision(const SurfaceGain::Known& known,
   const CandidateView& chosen = best.front();
   const Orientation& orientation = gain_.orientations()[chosen.view.orientation];
   gain_.look_from(known, chosen.voxel);
-  aimed_at_ = gain_.aimed_at(known, chosen.view.orientation);
+  aimed_at_ = gain_.aimed_at(chosen.view.orientation);
   way_ = paths_.waypoints_m(chosen.voxel);
 
   Decision decision;

@@ -22,7 +22,9 @@ constexpr std::int8_t kMaxEmpty = 2;  // voxels a plane bridges
 GrownSurface::GrownSurface(const VoxelMap& map)
     : reach_(std::max(1, static_cast<int>(kReach_m / map.grid().voxel_size_m))),
       expected_(all_empty(map)),
-      field_(expected_) {
+      field_(expected_),
+      with_unknown_(map.grid(), map.window()),
+      unknown_too_(with_unknown_) {
   const double decay = kDecay_m / map.grid().voxel_size_m;
   for (int squared = 0; squared <= reach_ * reach_; ++squared) {
     by_distance_.push_back(
@@ -73,6 +75,23 @@ void GrownSurface::update(const VoxelMap& map, std::span<const std::uint32_t> ch
   std::ranges::sort(changed_);
   changed_.erase(std::unique(changed_.begin(), changed_.end()), changed_.end());
   field_.update(expected_, changed_);
+  follow_unknown(map, changed_slots);
+}
+
+void GrownSurface::follow_unknown(const VoxelMap& map,
+                                  std::span<const std::uint32_t> changed_slots) {
+  std::vector<std::uint32_t> different;
+  const auto follow = [&](std::uint32_t slot) {
+    const Label known = is_unknown(map.labels()[slot]) ? Label::Unmarked : map.labels()[slot];
+    const bool grown = expected_.labels()[slot] == Label::OcclusionPlane;
+    const Label label = grown ? Label::OcclusionPlane : known;
+    if (with_unknown_.labels()[slot] == label) return;
+    with_unknown_.labels()[slot] = label;
+    different.push_back(slot);
+  };
+  std::ranges::for_each(changed_slots, follow);
+  std::ranges::for_each(changed_, follow);
+  unknown_too_.update(with_unknown_, different);
 }
 
 void GrownSurface::grow(const VoxelMap& map, const VoxelIndex& min, const VoxelIndex& end) {

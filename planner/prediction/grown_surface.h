@@ -33,8 +33,12 @@ class GrownSurface {
   /// within reach of them grow again.
   void update(const VoxelMap& map, std::span<const std::uint32_t> changed_slots);
 
-  /// Offsets as of the map's own field; grown and Occupied voxels stop a ray, all others do not.
+  /// Offsets as of the map's own field; grown (kOcclusionPlane) and Occupied voxels stop a ray, all
+  /// others do not.
   const FreeSpaceField& field() const { return field_; }
+  /// The same, but that unknown voxels that are not grown stop a ray too (kUnseen): what it meets
+  /// there is the first that can be new in any way.
+  const FreeSpaceField& unknown_too() const { return unknown_too_; }
   /// Of a voxel to be surface, 1/kCertain; 0 where no plane grows.
   std::int32_t likelihood(std::size_t offset) const { return likelihood_[offset]; }
   /// Slots whose likelihood the last update changed.
@@ -58,6 +62,7 @@ class GrownSurface {
   };
 
   void grow(const VoxelMap& map, const VoxelIndex& min, const VoxelIndex& end);
+  void follow_unknown(const VoxelMap& map, std::span<const std::uint32_t> changed_slots);
   void add_plane(const VoxelMap& map, const VoxelIndex& voxel);
   void step_from(const VoxelMap& map, const Growing& at, std::size_t bucket);
   bool in_plane(const Plane& plane, const VoxelIndex& voxel) const;
@@ -66,6 +71,8 @@ class GrownSurface {
   std::vector<std::int32_t> by_distance_;  // likelihood by squared distance in voxels
   VoxelMap expected_;                      // Occupied, grown as OcclusionPlane, Empty
   FreeSpaceField field_;
+  VoxelMap with_unknown_;  // the same, what is unknown else as Unmarked
+  FreeSpaceField unknown_too_;
   std::vector<std::int32_t> likelihood_;  // by offset
   std::vector<Grown> grown_;
   std::vector<std::uint32_t> changed_;

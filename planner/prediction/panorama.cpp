@@ -1,6 +1,7 @@
 #include "planner/prediction/panorama.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <numbers>
 
@@ -86,15 +87,77 @@ Panorama::Panorama(double reach) {
   }
 }
 
-void Panorama::cast(const FreeSpaceField& field, const VoxelIndex& sensor,
-                    std::span<std::int32_t> met_at) const {
+namespace {
+
+// Of a face's rows of cells as the ray kernel wants them: bit i % 8 of byte i / 8.
+static_assert(std::endian::native == std::endian::little);
+std::uint8_t* bits_of_face(Panorama::Cells& cells, std::size_t face) {
+  return reinterpret_cast<std::uint8_t*>(&cells[face * kSide]);
+}
+
+RayOutcomes outcomes_of_face(Panorama::Met& met, std::size_t face) {
+  RayOutcomes outcomes;
+  outcomes.met_at = &met.at[face * kCellsOfFace];
+  outcomes.occupied = bits_of_face(met.occupied, face);
+  outcomes.occlusion_plane = bits_of_face(met.plane, face);
+  outcomes.unseen = bits_of_face(met.unseen, face);
+  return outcomes;
+}
+
+void cast_all(const RayBundle& bundle, const FreeSpaceField& field, const VoxelIndex& sensor,
+              const RayOutcomes& outcomes) {
+  PacketQueue packets;
+  packets.refill(bundle.packets.size(), bundle.packets.size());
+  cast_bundle(field.bytes(), field.shifts(), static_cast<std::int32_t>(field.offset(sensor)),
+              field.steps_from(sensor), bundle, packets, outcomes);
+}
+
+}  // namespace
+
+void Panorama::cast(const FreeSpaceField& field, const VoxelIndex& sensor, Met& met) const {
+  met.occupied = met.plane = met.unseen = {};
   for (std::size_t face = 0; face < faces_.size(); ++face) {
-    PacketQueue packets;
-    packets.refill(faces_[face].packets.size(), faces_[face].packets.size());
-    RayOutcomes outcomes;
-    outcomes.met_at = &met_at[face * kCellsOfFace];
-    cast_bundle(field.bytes(), field.shifts(), static_cast<std::int32_t>(field.offset(sensor)),
-                field.steps_from(sensor), faces_[face], packets, outcomes);
+    cast_all(faces_[face], field, sensor, outcomes_of_face(met, face));
+  }
+}
+
+void Panorama::cast_some(const FreeSpaceField& field, const VoxelIndex& sensor, const Cells& cells,
+                         Met& met) const {
+  met.occupied = met.plane = met.unseen = {};
+  constexpr std::size_t kPacketsOfRow = kSide / RayBundle::kPacketRays;
+  constexpr std::uint64_t kPacket = (std::uint64_t{1} << RayBundle::kPacketRays) - 1;
+  RayBundle some;
+  std::vector<std::size_t> chosen;  // packets of the face
+  Met of_chosen;
+  for (std::size_t face = 0; face < faces_.size(); ++face) {
+    chosen.clear();
+    some.packets.clear();
+    for (std::size_t packet = 0; packet < faces_[face].packets.size(); ++packet) {
+      const std::uint64_t row = cells[face * kSide + packet / kPacketsOfRow];
+      const std::size_t first = packet % kPacketsOfRow * RayBundle::kPacketRays;
+      if ((row >> first & kPacket) == 0) continue;
+      chosen.push_back(packet);
+      some.packets.push_back(faces_[face].packets[packet]);
+    }
+    if (chosen.empty()) continue;
+    some.driving_axis = faces_[face].driving_axis;
+    some.direction = faces_[face].direction;
+    some.group.assign(chosen.size(), 0);
+    of_chosen.occupied = of_chosen.plane = of_chosen.unseen = {};
+    cast_all(some, field, sensor, outcomes_of_face(of_chosen, 0));
+    for (std::size_t i = 0; i < chosen.size(); ++i) {
+      std::copy_n(&of_chosen.at[i * RayBundle::kPacketRays], RayBundle::kPacketRays,
+                  &met.at[face * kCellsOfFace + chosen[i] * RayBundle::kPacketRays]);
+      const auto put = [&](const Cells& from, Cells& to) {
+        const std::size_t at = i % kPacketsOfRow * RayBundle::kPacketRays;
+        const std::uint64_t bits = from[i / kPacketsOfRow] >> at & kPacket;
+        to[face * kSide + chosen[i] / kPacketsOfRow] |=
+            bits << chosen[i] % kPacketsOfRow * RayBundle::kPacketRays;
+      };
+      put(of_chosen.occupied, met.occupied);
+      put(of_chosen.plane, met.plane);
+      put(of_chosen.unseen, met.unseen);
+    }
   }
 }
 
@@ -126,16 +189,6 @@ PanoramaViews::PanoramaViews(const RayTable& rays, std::span<const Orientation> 
     }
     begins_.push_back(runs_.size());
     cells_.push_back(cells);
-  }
-}
-
-void PanoramaViews::sum_rows(std::span<const std::int32_t> values, RowSums& sums) {
-  const std::int32_t* value = values.data();
-  std::int32_t* sum = sums.data();
-  for (int row = 0; row < Panorama::kRows; ++row) {
-    std::int32_t total = 0;
-    *sum++ = 0;
-    for (int column = 0; column < kSide; ++column) *sum++ = total += *value++;
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -29,10 +30,23 @@ class Panorama {
   /// @param reach of the rays, in voxels; 1 to IntegerLine::kMaxSteps
   explicit Panorama(double reach);
 
-  /// Casts them from a voxel: for each cell the field's offset of the voxel that its ray meets
-  /// first, or -1 when it meets only what may be jumped over.
-  void cast(const FreeSpaceField& field, const VoxelIndex& sensor,
-            std::span<std::int32_t> met_at) const;
+  /// A set of cells: a bit for each, cell i in bit i % kSide of row i / kSide.
+  using Cells = std::array<std::uint64_t, kRows>;
+  static_assert(kSide == 64);
+  /// What cells' rays meet.
+  struct Met {
+    std::vector<std::int32_t> at = std::vector<std::int32_t>(kCells, -1);  ///< the field's offset
+    Cells occupied{};  ///< cells that meet kOccupied,
+    Cells plane{};     ///< kOcclusionPlane,
+    Cells unseen{};    ///< and kUnseen
+  };
+
+  /// Casts all rays from a voxel. Of cells that meet only what may be jumped over the offset is -1.
+  void cast(const FreeSpaceField& field, const VoxelIndex& sensor, Met& met) const;
+  /// Casts those of some cells and maybe of some beside them; of the others `met` stays as it is,
+  /// and they are in none of its sets.
+  void cast_some(const FreeSpaceField& field, const VoxelIndex& sensor, const Cells& cells,
+                 Met& met) const;
 
  private:
   std::array<RayBundle, 6> faces_;
@@ -50,9 +64,30 @@ class PanoramaViews {
   std::size_t size() const { return begins_.size() - 1; }
   int cells(std::size_t view) const { return cells_[view]; }
 
+  /// How many of a view's cells are in a set.
+  int count(const Panorama::Cells& cells, std::size_t view) const {
+    int total = 0;
+    for (std::size_t i = begins_[view]; i < begins_[view + 1]; ++i) {
+      const Run& run = runs_[i];
+      const int row = run.begin / (Panorama::kSide + 1);
+      const int first = run.begin - row * (Panorama::kSide + 1);
+      const std::uint64_t in_run = ~std::uint64_t{0} >> (Panorama::kSide - (run.end - run.begin))
+                                                            << first;
+      total += std::popcount(cells[static_cast<std::size_t>(row)] & in_run);
+    }
+    return total;
+  }
+
   /// Sums of values from each row's first cell up to each of its cells.
   using RowSums = std::array<std::int32_t, Panorama::kRows*(Panorama::kSide + 1)>;
-  static void sum_rows(std::span<const std::int32_t> values, RowSums& sums);
+  /// Fills in the sums of one row.
+  static void sum_row(const std::array<std::int32_t, Panorama::kSide>& values, std::size_t row,
+                      RowSums& sums) {
+    std::int32_t total = 0;
+    std::int32_t* sum = &sums[row * (Panorama::kSide + 1)];
+    *sum++ = 0;
+    for (const std::int32_t value : values) *sum++ = total += value;
+  }
   /// The sum of the values of a view's cells.
   std::int32_t sum(const RowSums& sums, std::size_t view) const {
     std::int32_t total = 0;

@@ -1,6 +1,7 @@
 #include "planner/prediction/surface_gain.h"
 
 #include <algorithm>
+#include <bit>
 #include <stdexcept>
 #include <utility>
 
@@ -14,6 +15,21 @@ bool is_unknown(std::uint8_t byte) {
   return byte == FreeSpaceField::kUnseen || byte == FreeSpaceField::kOcclusionPlane;
 }
 
+template <class Visit>
+void for_each(std::uint64_t cells, std::size_t row, Visit visit) {
+  for (; cells != 0; cells &= cells - 1) {
+    visit(row * Panorama::kSide + static_cast<std::size_t>(std::countr_zero(cells)));
+  }
+}
+
+template <class Visit>
+void for_each(const Panorama::Cells& cells, Visit visit) {
+  for (std::size_t row = 0; row < cells.size(); ++row) for_each(cells[row], row, visit);
+}
+
+// Of one row of cells.
+using RowValues = std::array<std::int32_t, Panorama::kSide>;
+
 }  // namespace
 
 SurfaceGain::SurfaceGain(const PredictionRaster& raster, double voxel_size_m,
@@ -23,9 +39,7 @@ SurfaceGain::SurfaceGain(const PredictionRaster& raster, double voxel_size_m,
       panorama_(prediction_reach(raster, voxel_size_m)),
       views_(raster.rays, orientations_) {
   if (orientations_.empty()) throw std::invalid_argument("there are no orientations to judge");
-  met_at_.assign(Panorama::kCells, -1);
   grown_at_.assign(Panorama::kCells, -1);
-  improvement_.resize(Panorama::kCells);
   for (int cell = 0; cell < Panorama::kCells; ++cell) {
     directions_.push_back(quantise_direction(Panorama::direction(cell)));
   }
@@ -35,30 +49,66 @@ void SurfaceGain::look_from(const Known& known, const VoxelIndex& sensor) {
   noted_.resize(known.field.size(), 0);
   for (const std::uint32_t block : blocks_) noted_[block] = 0;
   blocks_.clear();
-  panorama_.cast(known.field, sensor, met_at_);
-  count(met_at_, known.field.size(), met_);
+  look(known, sensor);
   if (parameters_.improvement_weight > 0.0) add_improvement(known);
   weigh_unknown(known);
-  if (known.grown != nullptr) {
-    panorama_.cast(known.grown->field(), sensor, grown_at_);
-    count(grown_at_, known.field.size(), grown_);
-    weigh_grown(known);
-  } else {
-    grown_.by_offset.resize(1, 0);
-  }
+  weigh_grown(known);
   sum_cells();
-  forget(met_);
+  forget(unknown_);
   forget(grown_);
 }
 
-void SurfaceGain::count(const Cells& met_at, std::size_t offsets, Tally& tally) {
-  tally.by_offset.resize(offsets, 0);
-  for (const std::int32_t at : met_at) {
-    if (at < 0) continue;
-    if (tally.by_offset[static_cast<std::size_t>(at)]++ == 0) {
-      tally.offsets.push_back(static_cast<std::uint32_t>(at));
+// What a cell meets first and the grown voxel it meets when nothing else unknown stops it are
+// mostly the same voxel, or known. So all cells are cast once, until anything that can be new, and
+// then only those again that have met but one of the two.
+void SurfaceGain::look(const Known& known, const VoxelIndex& sensor) {
+  if (known.grown == nullptr) {
+    panorama_.cast(known.field, sensor, met_);
+    grown_cells_ = {};
+    for (std::size_t row = 0; row < unknown_cells_.size(); ++row) {
+      unknown_cells_[row] = met_.unseen[row] | met_.plane[row];
     }
+    return;
   }
+  panorama_.cast(known.grown->unknown_too(), sensor, met_);
+  panorama_.cast_some(known.grown->field(), sensor, met_.unseen, behind_);
+  for (std::size_t row = 0; row < grown_cells_.size(); ++row) {
+    const std::uint64_t behind = met_.unseen[row] & behind_.plane[row];
+    for_each(behind, row, [&](std::size_t cell) { grown_at_[cell] = behind_.at[cell]; });
+    for_each(met_.plane[row], row, [&](std::size_t cell) { grown_at_[cell] = met_.at[cell]; });
+    grown_cells_[row] = met_.plane[row] | behind;
+  }
+  look_behind_bridges(known, sensor);
+}
+
+// A plane may bridge Empty voxels: what is unknown is met behind them.
+void SurfaceGain::look_behind_bridges(const Known& known, const VoxelIndex& sensor) {
+  Panorama::Cells bridges{};
+  bool any = false;
+  for_each(met_.plane, [&](std::size_t cell) {
+    if (is_unknown(known.field.bytes()[met_.at[cell]])) return;
+    bridges[cell / Panorama::kSide] |= std::uint64_t{1} << cell % Panorama::kSide;
+    any = true;
+  });
+  if (any) {
+    panorama_.cast_some(known.field, sensor, bridges, behind_);
+    for_each(bridges, [&](std::size_t cell) { met_.at[cell] = behind_.at[cell]; });
+  }
+  for (std::size_t row = 0; row < unknown_cells_.size(); ++row) {
+    unknown_cells_[row] = met_.unseen[row] | (met_.plane[row] & ~bridges[row]);
+    if (bridges[row] == 0) continue;
+    unknown_cells_[row] |= bridges[row] & (behind_.unseen[row] | behind_.plane[row]);
+    met_.occupied[row] |= bridges[row] & behind_.occupied[row];
+  }
+}
+
+void SurfaceGain::count(const Panorama::Cells& cells, const std::vector<std::int32_t>& met_at,
+                        std::size_t offsets, Tally& tally) {
+  tally.by_offset.resize(offsets, 0);
+  for_each(cells, [&](std::size_t cell) {
+    const auto offset = static_cast<std::uint32_t>(met_at[cell]);
+    if (tally.by_offset[offset]++ == 0) tally.offsets.push_back(offset);
+  });
 }
 
 void SurfaceGain::forget(Tally& tally) {
@@ -67,41 +117,55 @@ void SurfaceGain::forget(Tally& tally) {
 }
 
 void SurfaceGain::weigh_unknown(const Known& known) {
+  count(unknown_cells_, met_.at, known.field.size(), unknown_);
   const auto whole = static_cast<std::int32_t>(parameters_.unknown_weight * kUnit);
-  for (const std::uint32_t offset : met_.offsets) {
-    std::int32_t& value = met_.by_offset[offset];
-    if (!is_unknown(known.field.bytes()[offset])) {
-      value = kOccupied;
-      continue;
-    }
+  for (const std::uint32_t offset : unknown_.offsets) {
+    std::int32_t& value = unknown_.by_offset[offset];
     value = (whole >> std::min<int>(known.in_vain[offset], 30)) / value;
     note_block(known, offset);
   }
 }
 
 void SurfaceGain::weigh_grown(const Known& known) {
+  count(grown_cells_, grown_at_, known.field.size(), grown_);
   for (const std::uint32_t offset : grown_.offsets) {
-    const std::int32_t likely = known.grown->likelihood(offset);
     std::int32_t& value = grown_.by_offset[offset];
-    value = (likely >> std::min<int>(known.in_vain[offset], 30)) / value;
-    if (likely > 0) note_block(known, offset);
+    value = (known.grown->likelihood(offset) >> std::min<int>(known.in_vain[offset], 30)) / value;
+    note_block(known, offset);
   }
 }
 
 void SurfaceGain::add_improvement(const Known& known) {
-  for (std::size_t cell = 0; cell < met_at_.size(); ++cell) {
-    improvement_[cell] = 0;
-    if (met_at_[cell] < 0) continue;
-    const auto offset = static_cast<std::uint32_t>(met_at_[cell]);
-    if (is_unknown(known.field.bytes()[offset])) continue;
-    const SurfaceTable::Surface& surface = (*known.surfaces)[known.surfaces->number_at(offset)];
-    const int better =
-        predicted_quality(quantised_cosine(surface.normal, directions_[cell])) - surface.quality;
-    if (better <= 0) continue;
-    improvement_[cell] = better / met_.by_offset[offset];
-    note_block(known, offset);
+  count(met_.occupied, met_.at, known.field.size(), unknown_);
+  for (std::size_t row = 0; row < met_.occupied.size(); ++row) {
+    RowValues values{};
+    for_each(met_.occupied[row], row, [&](std::size_t cell) {
+      const auto offset = static_cast<std::uint32_t>(met_.at[cell]);
+      const SurfaceTable::Surface& surface = (*known.surfaces)[known.surfaces->number_at(offset)];
+      const int better =
+          predicted_quality(quantised_cosine(surface.normal, directions_[cell])) - surface.quality;
+      if (better <= 0) return;
+      values[cell % Panorama::kSide] = better / unknown_.by_offset[offset];
+      note_block(known, offset);
+    });
+    PanoramaViews::sum_row(values, row, improvement_sums_);
   }
-  PanoramaViews::sum_rows(improvement_, improvement_sums_);
+  forget(unknown_);
+}
+
+void SurfaceGain::sum_cells() {
+  for (std::size_t row = 0; row < unknown_cells_.size(); ++row) {
+    RowValues values{};
+    const auto add = [&](std::uint64_t cells, const std::vector<std::int32_t>& at,
+                         const Tally& tally) {
+      for_each(cells, row, [&](std::size_t cell) {
+        values[cell % Panorama::kSide] += tally.by_offset[static_cast<std::size_t>(at[cell])];
+      });
+    };
+    add(unknown_cells_[row], met_.at, unknown_);
+    add(grown_cells_[row], grown_at_, grown_);
+    PanoramaViews::sum_row(values, row, gain_sums_);
+  }
 }
 
 void SurfaceGain::note_block(const Known& known, std::uint32_t offset) {
@@ -111,63 +175,50 @@ void SurfaceGain::note_block(const Known& known, std::uint32_t offset) {
   blocks_.push_back(block);
 }
 
-void SurfaceGain::sum_cells() {
-  // Offset 0 lies outside the window: nothing is ever met there, and it counts 0.
-  const auto value_at = [](const Tally& tally, std::int32_t at) {
-    return tally.by_offset[static_cast<std::size_t>(std::max(at, 0))];
-  };
-  std::size_t sum = 0;
-  for (std::size_t cell = 0; cell < met_at_.size(); ++cell) {
-    if (cell % Panorama::kSide == 0) {
-      gain_sums_[sum] = occupied_sums_[sum] = 0;
-      ++sum;
-    }
-    const std::int32_t met = value_at(met_, met_at_[cell]);
-    const std::int32_t grown = value_at(grown_, grown_at_[cell]);
-    gain_sums_[sum] = gain_sums_[sum - 1] + std::max(met, 0) + grown;
-    occupied_sums_[sum] = occupied_sums_[sum - 1] + (met == kOccupied ? 1 : 0);
-    ++sum;
-  }
+double SurfaceGain::overlap(std::size_t orientation) const {
+  return static_cast<double>(views_.count(met_.occupied, orientation)) /
+         std::max(1, views_.cells(orientation));
 }
 
-ExpectedView SurfaceGain::view(std::size_t orientation) const {
+ExpectedView SurfaceGain::new_in(std::size_t orientation) const {
   ExpectedView view;
   view.orientation = orientation;
   view.new_voxels = static_cast<double>(views_.sum(gain_sums_, orientation)) / kUnit;
   if (parameters_.improvement_weight > 0.0) {
     view.improvement = static_cast<double>(views_.sum(improvement_sums_, orientation)) / kUnit;
   }
-  view.overlap = static_cast<double>(views_.sum(occupied_sums_, orientation)) /
-                 std::max(1, views_.cells(orientation));
+  return view;
+}
+
+ExpectedView SurfaceGain::view(std::size_t orientation) const {
+  ExpectedView view = new_in(orientation);
+  view.overlap = overlap(orientation);
   return view;
 }
 
 ExpectedView SurfaceGain::best() const {
   ExpectedView best;
   for (std::size_t i = 0; i < views_.size(); ++i) {
-    const ExpectedView candidate = view(i);
-    if (candidate.overlap < parameters_.min_overlap) continue;
-    if (candidate.value(parameters_.improvement_weight) >
+    ExpectedView candidate = new_in(i);
+    if (candidate.value(parameters_.improvement_weight) <=
         best.value(parameters_.improvement_weight)) {
-      best = candidate;
+      continue;
     }
+    candidate.overlap = overlap(i);
+    if (candidate.overlap >= parameters_.min_overlap) best = candidate;
   }
   return best;
 }
 
-std::vector<std::uint32_t> SurfaceGain::aimed_at(const Known& known,
-                                                 std::size_t orientation) const {
+std::vector<std::uint32_t> SurfaceGain::aimed_at(std::size_t orientation) const {
   std::vector<std::uint32_t> offsets;
   views_.for_each_cell(orientation, [&](int cell) {
-    const std::int32_t at = met_at_[static_cast<std::size_t>(cell)];
-    if (at >= 0 && is_unknown(known.field.bytes()[at])) {
-      offsets.push_back(static_cast<std::uint32_t>(at));
-    }
-    const std::int32_t grown = grown_at_[static_cast<std::size_t>(cell)];
-    if (known.grown != nullptr && grown >= 0 &&
-        known.grown->likelihood(static_cast<std::size_t>(grown)) > 0) {
-      offsets.push_back(static_cast<std::uint32_t>(grown));
-    }
+    const auto at = static_cast<std::size_t>(cell);
+    const auto is_in = [&](const Panorama::Cells& cells) {
+      return (cells[at / Panorama::kSide] >> at % Panorama::kSide & 1) != 0;
+    };
+    if (is_in(unknown_cells_)) offsets.push_back(static_cast<std::uint32_t>(met_.at[at]));
+    if (is_in(grown_cells_)) offsets.push_back(static_cast<std::uint32_t>(grown_at_[at]));
   });
   std::ranges::sort(offsets);
   offsets.erase(std::unique(offsets.begin(), offsets.end()), offsets.end());
@@ -177,7 +228,7 @@ std::vector<std::uint32_t> SurfaceGain::aimed_at(const Known& known,
 ViewCounts SurfaceGain::counts(const Known& known, std::size_t orientation) const {
   ViewCounts counts;
   views_.for_each_cell(orientation, [&](int cell) {
-    const std::int32_t at = met_at_[static_cast<std::size_t>(cell)];
+    const std::int32_t at = met_.at[static_cast<std::size_t>(cell)];
     if (at < 0) {
       ++counts.open;
       return;

@@ -74,20 +74,23 @@ class SurfaceGain {
   /// as long as nothing changes in them, looking again from here shows the same.
   std::span<const std::uint32_t> blocks() const { return blocks_; }
   /// Offsets of the distinct unknown voxels that a view is to show.
-  std::vector<std::uint32_t> aimed_at(const Known& known, std::size_t orientation) const;
+  std::vector<std::uint32_t> aimed_at(std::size_t orientation) const;
   /// What the view's cells meet, as if each were a ray.
   ViewCounts counts(const Known& known, std::size_t orientation) const;
 
  private:
-  using Cells = std::vector<std::int32_t>;
-  // What cells have met, each voxel once.
+  // How many cells meet each voxel, then what each of them counts.
   struct Tally {
-    std::vector<std::uint32_t> offsets;
-    Cells by_offset;  // how many cells have met it, then what each of them counts; 0 in between
+    std::vector<std::uint32_t> offsets;   // of the voxels, each once
+    std::vector<std::int32_t> by_offset;  // 0 in between
   };
-  static constexpr std::int32_t kOccupied = -1;  // what a cell counts that meets such a voxel
 
-  static void count(const Cells& met_at, std::size_t offsets, Tally& tally);
+  ExpectedView new_in(std::size_t orientation) const;
+  double overlap(std::size_t orientation) const;
+  void look(const Known& known, const VoxelIndex& sensor);
+  void look_behind_bridges(const Known& known, const VoxelIndex& sensor);
+  static void count(const Panorama::Cells& cells, const std::vector<std::int32_t>& met_at,
+                    std::size_t offsets, Tally& tally);
   static void forget(Tally& tally);
   void weigh_unknown(const Known& known);
   void weigh_grown(const Known& known);
@@ -100,14 +103,15 @@ class SurfaceGain {
   Panorama panorama_;
   PanoramaViews views_;
   std::vector<QuantisedDirection> directions_;  // of cells, for quality
-  Cells met_at_;                                // by cell
-  Cells grown_at_;
-  Tally met_;
+  Panorama::Met met_;                           // what cells meet first; their offsets
+  Panorama::Met behind_;
+  std::vector<std::int32_t> grown_at_;  // by cell
+  Panorama::Cells unknown_cells_{};     // that meet something unknown first
+  Panorama::Cells grown_cells_{};       // whose grown_at_ holds a grown voxel
+  Tally unknown_;
   Tally grown_;
-  Cells improvement_;  // by cell, 1/kUnit
   PanoramaViews::RowSums gain_sums_;
   PanoramaViews::RowSums improvement_sums_;
-  PanoramaViews::RowSums occupied_sums_;
   std::vector<std::uint8_t> noted_;  // by block of the field; 0 in between
   std::vector<std::uint32_t> blocks_;
 };

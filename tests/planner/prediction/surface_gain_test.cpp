@@ -165,7 +165,7 @@ TEST(SurfaceGain, AVoxelThatFillsTheViewIsOneVoxel) {
   EXPECT_LE(gain.best().new_voxels, 1.0);
   const double before = gain.best().new_voxels;
   const auto offset = static_cast<std::uint32_t>(field.offset({15, 16, 15}));
-  EXPECT_EQ(gain.aimed_at(known, gain.best().orientation), std::vector<std::uint32_t>{offset});
+  EXPECT_EQ(gain.aimed_at(gain.best().orientation), std::vector<std::uint32_t>{offset});
   in_vain[offset] = 1;  // a view was to show it, and did not
   gain.look_from(known, {15, 15, 15});
   EXPECT_NEAR(gain.best().new_voxels, 0.5 * before, 0.02);
