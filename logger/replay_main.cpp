@@ -4,19 +4,11 @@
 #include <iostream>
 
 #include "lcmtypes/program_version.h"
+#include "logger/recovered_run.h"
 #include "logger/replay.h"
 #include "logger/unchecked_fields.h"
 
 namespace {
-
-/// The log of a run's folder, or the log itself.
-std::filesystem::path log_of(const std::string& argument) {
-  if (!std::filesystem::exists(argument)) {
-    throw nextview::LogError(argument + ": no such folder");
-  }
-  if (!std::filesystem::is_directory(argument)) return argument;
-  return std::filesystem::path(argument) / "run.lcmlog";
-}
 
 constexpr std::size_t kLinesShown = 10;
 
@@ -42,7 +34,7 @@ void show_unchecked(const std::vector<nextview::UncheckedFields>& unchecked) {
 
 int replay_run(const std::string& argument, std::optional<std::int64_t> run,
                const nextview::ReplayOptions& options) {
-  const std::filesystem::path file = log_of(argument);
+  const std::filesystem::path file = nextview::log_file_of(argument);
   nextview::RunLog log(file, run, nextview::RangeImages::Keep);
   log.read_on();
   show(std::cerr, "left out: ", log.dropped());

@@ -4,33 +4,17 @@
 #include <vector>
 
 #include "lcmtypes/program_version.h"
-#include "logger/run_log.h"
-#include "mapper/map_builder.h"
-#include "mapper/mapper_config.h"
+#include "logger/recovered_run.h"
 #include "report/recovered_picture.h"
 
 namespace {
 
 void draw_run(const std::filesystem::path& folder, const std::filesystem::path& file, int views,
               const nextview::PictureView& view) {
-  nextview::RunLog log(folder / "run.lcmlog", std::nullopt, nextview::RangeImages::Keep);
-  log.read_on();
-  const nextview::RunRecord& record = log.record();
-  if (!record.config()) {
-    throw nextview::LogError((folder / "run.lcmlog").string() +
-                             ": no run's configuration is in it");
-  }
-  nextview::MapBuilder builder(nextview::grid_of(*record.config()),
-                               nextview::window_of(*record.config()));
+  const nextview::RecoveredRun run = nextview::recover_run(folder, std::nullopt, views);
   std::vector<nextview::SensorPose> poses;
-  for (int i = 1; i <= std::min(views, record.latest_view()); ++i) {
-    const nextview::commit_t* commit = record.commit(i);
-    if (commit == nullptr || !record.missing_of_view(i).empty()) break;
-    const auto* logged = record.range_image(i, commit->attempt);
-    builder.fold(logged->image);
-    poses.push_back(logged->image.pose);
-  }
-  write_png(recovered_picture(builder.map(), poses, view), file);
+  for (const auto* received : run.images) poses.push_back(received->image.pose);
+  write_png(recovered_picture(run.builder.map(), poses, view), file);
   std::cout << file.string() << ": " << poses.size() << " views" << std::endl;
 }
 

@@ -36,6 +36,7 @@ const std::map<std::string, Arrows> kArrows = {
     {"logger", {{}, {"sensor", "mapper", "planner"}}},
     {"scoring", {{"sensor", "scene", "sensor_sim", "mapper", "planner/prediction"}, {}}},
     {"report", {{"sensor", "scene", "mapper", "planner"}, {"logger", "scoring"}}},
+    {"exporter", {{}, {"sensor", "mapper", "logger", "report"}}},
     {"runner",
      {{},
       {"sensor", "scene", "sensor_sim", "base_sim", "mapper", "planner", "logger", "scoring",
@@ -43,7 +44,7 @@ const std::map<std::string, Arrows> kArrows = {
 };
 
 /// Folders that are on the bus as a whole; of the others the files that are named so.
-const Folders kOnTheBus = {"lcmtypes", "logger", "report", "runner"};
+const Folders kOnTheBus = {"lcmtypes", "logger", "report", "exporter", "runner"};
 /// Folders that hold no part of the system.
 const Folders kNotOurs = {"tests", "bench"};
 
