@@ -142,7 +142,7 @@ void Run::start_up() {
   if (setup_.scene && !options_.no_coverage) start_scoring();
   // Each says so when it has loaded what it needs; only then is there somebody to hear a goal.
   pump_until([&] { return all_of(answering, fresh_statuses_); });
-  processes_->start_planner();
+  processes_->start_planner(options_.planner);
   last_progress_ = Clock::now();
 }
 
