@@ -341,6 +341,7 @@ FinishedRun Run::finish(Clock::time_point program_start) {
 
   run.config = setup_.config;
   run.rows = rows_.rows();
+  run.map_memory_bytes = rows_.map_memory_bytes();
   run.visible = visible_;
   run.coverage_unknown = coverage_unknown_;
   if (options_.no_coverage) run.coverage_unknown = "--no-coverage was given";
