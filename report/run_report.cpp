@@ -148,6 +148,7 @@ void write_summary(std::ostream& out, const FinishedRun& run) {
   json["bus_and_waiting_share"] = bus_and_waiting_share(run);
   for (const Stage& stage : kStages) json["stage_s_median"][stage.name] = median_s(run, stage);
   json["peak_memory_bytes"] = run.peak_memory_bytes;
+  json["map_memory_bytes"] = run.map_memory_bytes;
   json["messages"] = Json::object();
   for (const auto& [role, status] : run.statuses) {
     json["messages"][role] = {{"lost", status.lost},

@@ -27,6 +27,7 @@ struct FinishedRun {
   double start_up_s = 0.0;       ///< from there to the first goal
   double first_goal_to_last_commit_s = 0.0;               ///< as seen on the bus
   std::map<std::string, std::int64_t> peak_memory_bytes;  ///< by role
+  std::size_t map_memory_bytes = 0;                       ///< of the voxel map alone, at the end
   std::map<std::string, status_t> statuses;               ///< by role, as last heard
   LogCounters log;
   std::string lcm_url;

@@ -51,6 +51,8 @@ class ViewRows {
   void complete(const RunRecord& record);
 
   const std::vector<ViewRow>& rows() const { return rows_; }
+  /// What the voxel map takes after them.
+  std::size_t map_memory_bytes() const { return builder_.map().memory_bytes(); }
 
  private:
   MapBuilder builder_;

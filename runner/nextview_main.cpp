@@ -22,6 +22,8 @@ constexpr Command kCommands[] = {
     {"run", "Recover a scene: simulators, mapper, planner, recorder"},
     {"replay", "Rebuild a run's map from its log and compare every digest"},
     {"picture", "Draw what a run has recovered"},
+    {"export", "Write a run's voxels, points and poses for other programs"},
+    {"search", "What the search for a view has tried"},
     {"bound", "How few views and metres a scene takes at least"},
     {"sensor_sim", "The simulated sensor's process alone"},
     {"base_sim", "The simulated robot's process alone"},

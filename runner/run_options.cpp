@@ -67,6 +67,12 @@ void add_scene_options(CLI::App& app, RunOptions& options) {
       ->allow_extra_args(false)
       ->check(CLI::IsMember({"sensor_sim", "base_sim"}))
       ->group(group);
+  app.add_option(
+         "--planner", options.planner,
+         "A planner of your own: this program is started in place of nextview_planner, with "
+         "--lcm-url=URL --run=N, once the others are ready")
+      ->check(CLI::ExistingFile)
+      ->group(group);
   app.add_option("--workspace", options.workspace_m,
                  "Without a scene: X0 Y0 Z0 X1 Y1 Z1, the box to be recovered, in metres")
       ->expected(6)

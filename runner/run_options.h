@@ -22,6 +22,7 @@ struct RunOptions {
   /// Of sensor_sim and base_sim those that a driver of one's own stands in for. Without either
   /// there is no scene.
   std::vector<std::string> without;
+  std::string planner;              ///< program started as the planner; empty: nextview_planner
   std::vector<double> workspace_m;  ///< without a scene: its lowest corner and its highest
   std::vector<double> start_m;      ///< three numbers, or empty: what the scene says
   std::optional<double> start_pan_deg;

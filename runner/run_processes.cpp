@@ -40,19 +40,33 @@ RunProcesses::RunProcesses(std::string lcm_url, std::int64_t run, const std::fil
   for (const std::string& role : answering) start(role);
 }
 
-void RunProcesses::start_planner() { start("planner"); }
+void RunProcesses::start_planner(const std::filesystem::path& program) {
+  if (program.empty()) {
+    start("planner");
+    return;
+  }
+  try {
+    start("planner", std::filesystem::absolute(program));
+  } catch (const std::system_error& error) {
+    throw SetupError(std::string("--planner: ") + error.what() +
+                     ": name a program that can be run");
+  }
+}
 
 void RunProcesses::start(const std::string& role) {
   const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   try {
-    children_.emplace_back(
-        role,
-        std::vector<std::string>{(folder / ("nextview_" + role)).string(), "--lcm-url=" + lcm_url_,
-                                 "--run=" + std::to_string(run_)},
-        AtParentsDeath::Kill);
+    start(role, folder / ("nextview_" + role));
   } catch (const std::system_error& error) {
     throw SetupError(std::string(error.what()) + ": build nextview again");
   }
+}
+
+void RunProcesses::start(const std::string& role, const std::filesystem::path& program) {
+  children_.emplace_back(role,
+                         std::vector<std::string>{program.string(), "--lcm-url=" + lcm_url_,
+                                                  "--run=" + std::to_string(run_)},
+                         AtParentsDeath::Kill);
 }
 
 std::optional<std::string> RunProcesses::casualty() {

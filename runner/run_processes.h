@@ -27,8 +27,9 @@ class RunProcesses {
 
   /// Starts the planner, and with it the run: when the others are ready, so that its first goal
   /// need not be asked for again.
+  /// @param program a planner of the user's own; empty: nextview_planner
   /// @throws SetupError likewise
-  void start_planner();
+  void start_planner(const std::filesystem::path& program);
 
   /// Who has ended though it should not have, how, and its last words; nothing when all run.
   std::optional<std::string> casualty();
@@ -45,6 +46,7 @@ class RunProcesses {
 
  private:
   void start(const std::string& role);
+  void start(const std::string& role, const std::filesystem::path& program);
 
   std::string lcm_url_;
   std::int64_t run_;

@@ -134,7 +134,7 @@ void RunSupervisor::start_up() {
   if (setup_.scene && !options_.no_coverage) start_scoring();
   // Each says so when it has loaded what it needs; only then is there somebody to hear a goal.
   pump_until([&] { return all_of(answering, heard_.fresh_statuses); });
-  processes_->start_planner();
+  processes_->start_planner(options_.planner);
   heard_.last_progress = Clock::now();
 }
 
@@ -295,6 +295,7 @@ FinishedRun RunSupervisor::finish(Clock::time_point program_start) {
 
   run.config = setup_.config;
   run.rows = rows_.rows();
+  run.map_memory_bytes = rows_.map_memory_bytes();
   run.visible = visible_;
   run.coverage_unknown = why_coverage_is_unknown();
   run.statuses = heard_.statuses;

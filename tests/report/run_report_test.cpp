@@ -87,6 +87,7 @@ TEST(Summary, SaysHowTheRunEnded) {
   FinishedRun run = two_views();
   run.collisions = 1;
   run.stop_reason = "nothing_new";
+  run.map_memory_bytes = 750000;
   std::ostringstream out;
   write_summary(out, run);
   const auto json = nlohmann::json::parse(out.str());
@@ -99,6 +100,7 @@ TEST(Summary, SaysHowTheRunEnded) {
   EXPECT_EQ(json.at("collisions"), 1);
   EXPECT_EQ(json.at("plan_s_median"), 0.004) << "the start was not decided on";
   EXPECT_EQ(json.at("map_digest"), kDigest);
+  EXPECT_EQ(json.at("map_memory_bytes"), 750000);
 }
 
 TEST(Summary, CountsAsBusAndWaitingWhatNoStageOnTheLongestWayTakes) {
