@@ -31,16 +31,33 @@ constexpr Bounds in_degrees(const Bounds& radians) {
   return {radians.name, radians.least * kDegreesPerRad, radians.most * kDegreesPerRad};
 }
 
+/// --start auto, or --start X Y Z.
+void take_start(const std::vector<std::string>& given, RunOptions& options) {
+  options.start_auto = given.size() == 1 && given.front() == "auto";
+  options.start_m.clear();
+  if (options.start_auto) return;
+  for (const std::string& text : given) {
+    double value = 0.0;
+    if (given.size() != 3 || !CLI::detail::lexical_cast(text, value) ||
+        !bounds::kPosition.contain(value)) {
+      throw CLI::ValidationError(
+          "--start", "must be auto, or three numbers X Y Z in metres; SCENE goes before it");
+    }
+    options.start_m.push_back(value);
+  }
+}
+
 void add_scene_options(CLI::App& app, RunOptions& options) {
   const std::string group = "Scene";
   app.add_option("SCENE", options.scene,
                  "boxes, columns, another folder of scenes/, or a CAD file of any format assimp "
-                 "reads (with --start); default: boxes");
-  app.add_option(
-         "--start", options.start_m,
-         "Where the sensor starts: X Y Z in metres, world frame; default: as the scene says")
-      ->expected(3)
-      ->check(number_within(bounds::kPosition))
+                 "reads (with --start, see there); default: boxes");
+  app.add_option_function<std::vector<std::string>>(
+         "--start", [&options](const auto& given) { take_start(given, options); },
+         "Where the sensor starts: X Y Z in metres, world frame, or auto: where it sees most; "
+         "default: as the scene says")
+      ->expected(1, 3)
+      ->type_name("X Y Z | auto")
       ->group(group);
   app.add_option("--start-pan", options.start_pan_deg,
                  "Where it looks at first, degrees: 0 along +y, 90 along -x; default: as the scene "

@@ -25,6 +25,7 @@ struct RunOptions {
   std::string planner;              ///< program started as the planner; empty: nextview_planner
   std::vector<double> workspace_m;  ///< without a scene: its lowest corner and its highest
   std::vector<double> start_m;      ///< three numbers, or empty: what the scene says
+  bool start_auto = false;          ///< a start is to be found
   std::optional<double> start_pan_deg;
   double start_tilt_deg = 0.0;
 

@@ -15,6 +15,7 @@
 #include "mapper/mapper_config.h"
 #include "scene/enclosure.h"
 #include "scene/scene_catalog.h"
+#include "scene/standing_places.h"
 #include "sensor/sensor_config.h"
 
 namespace nextview {
@@ -49,18 +50,35 @@ SceneOptions given_options(const RunOptions& options) {
   return given;
 }
 
-void fill_start(run_config_t& config, const RunOptions& options, const SceneDescription& scene,
-                const Eigen::AlignedBox3d& bounds) {
-  std::optional<Eigen::Vector3d> start_m = scene.start_m;
-  if (!options.start_m.empty()) start_m = Eigen::Vector3d(options.start_m.data());
-  if (!start_m) {
+std::string as_option(const Eigen::Vector3d& start_m) {
+  return fmt::format("--start {:.2f} {:.2f} {:.2f}", start_m.x(), start_m.y(), start_m.z());
+}
+
+/// Where the run is to start: as the command line says, else the scene, else nowhere.
+/// @throws SetupError naming places that would do
+Eigen::Vector3d start_in_scene(const RunOptions& options, const SceneDescription& description,
+                               const Scene& scene) {
+  if (!options.start_m.empty()) return Eigen::Vector3d(options.start_m.data());
+  if (description.start_m && !options.start_auto) return *description.start_m;
+  constexpr std::size_t kNamed = 3;
+  const std::vector<Eigen::Vector3d> places =
+      standing_places(scene, {.clearance_m = options.clearance_m}, kNamed);
+  if (places.empty()) {
     throw SetupError(
-        fmt::format("{} says no start position: give --start X Y Z, inside "
-                    "({:.2f} .. {:.2f}, {:.2f} .. {:.2f}, {:.2f} .. {:.2f}) m",
-                    scene.file.string(), bounds.min().x(), bounds.max().x(), bounds.min().y(),
-                    bounds.max().y(), bounds.min().z(), bounds.max().z()));
+        fmt::format("{}: found no place to start from, 1.2 m above a floor and {:.2f} "
+                    "m from everything: see --start X Y Z, --clearance, --unit, --up",
+                    description.file.string(), options.clearance_m));
   }
-  for (int axis = 0; axis < 3; ++axis) config.base.start_m[axis] = (*start_m)[axis];
+  if (options.start_auto) return places.front();
+  std::string named;
+  for (const Eigen::Vector3d& place : places) named += as_option(place) + ", ";
+  throw SetupError(description.file.string() + " says no start position. These would do: " + named +
+                   "and --start auto takes the first");
+}
+
+void fill_start(run_config_t& config, const RunOptions& options, const SceneDescription& scene,
+                const Eigen::Vector3d& start_m) {
+  for (int axis = 0; axis < 3; ++axis) config.base.start_m[axis] = start_m[axis];
   config.base.start_pan_rad = scene.start_pan_rad.value_or(0.0);
   if (options.start_pan_deg) config.base.start_pan_rad = *options.start_pan_deg * kRadPerDegree;
   config.base.start_tilt_rad = options.start_tilt_deg * kRadPerDegree;
@@ -201,13 +219,13 @@ void check_start(const run_config_t& config, double floor_m, const Scene& scene)
 /// What does not depend on where the scene comes from.
 /// @return the height of the floor under the start
 double fill_rest(run_config_t& config, const RunOptions& options,
-                 const SceneDescription& description, const Scene* scene,
-                 const Eigen::AlignedBox3d& bounds) {
+                 const SceneDescription& description, const Eigen::Vector3d& start_m,
+                 const Scene* scene, const Eigen::AlignedBox3d& bounds) {
   config.seed = options.seed;
   config.scene_name = description.name;
   config.program_version = program_version();
   config.strategy = options.strategy;
-  fill_start(config, options, description, bounds);
+  fill_start(config, options, description, start_m);
   fill_sensor(config, options);
   const double floor_m = floor_under_start_m(config, scene, bounds);
   fill_base(config, options, bounds, floor_m);
@@ -236,7 +254,10 @@ RunSetup prepare_in_scene(const RunOptions& options) {
   if (description.options.up) config.scene_up = name_of(*description.options.up);
   config.scene_digest = mesh_digest(mesh);
   setup.scene = std::make_shared<const Scene>(std::move(mesh));
-  const double floor_m = fill_rest(config, options, description, setup.scene.get(), bounds);
+  const Eigen::Vector3d start_m = start_in_scene(options, description, *setup.scene);
+  if (options.start_auto) setup.notes.push_back("starts where it sees most: " + as_option(start_m));
+  const double floor_m =
+      fill_rest(config, options, description, start_m, setup.scene.get(), bounds);
   check_start(config, floor_m, *setup.scene);
   setup.notes.push_back(lift_in_words(config, floor_m));
   const double escape = escape_share(*setup.scene, start_pose_of(config).position_m);
@@ -255,7 +276,7 @@ RunSetup prepare_without_scene(const RunOptions& options) {
     throw SetupError(
         "without simulators there is no SCENE, --unit or --up: give --start and --workspace only");
   }
-  if (options.start_m.empty() || options.workspace_m.empty()) {
+  if (options.start_m.empty() || options.workspace_m.empty()) {  // also --start auto
     throw SetupError(
         "--without sensor_sim,base_sim needs --start X Y Z and --workspace X0 Y0 Z0 X1 Y1 Z1");
   }
@@ -267,7 +288,8 @@ RunSetup prepare_without_scene(const RunOptions& options) {
   SceneDescription description;
   description.name = "robot";
   RunSetup setup;
-  fill_rest(setup.config, options, description, nullptr, bounds);
+  fill_rest(setup.config, options, description, Eigen::Vector3d(options.start_m.data()), nullptr,
+            bounds);
   const base_config_t& base = setup.config.base;
   if (!bounds.contains(Eigen::Vector3d(base.start_m)) || base.start_m[2] < base.lift_min_m ||
       base.start_m[2] > base.lift_max_m) {

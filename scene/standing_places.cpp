@@ -37,12 +37,17 @@ std::vector<double> surfaces_below(const Scene& scene, Eigen::Vector3d from_m, d
   return heights;
 }
 
+// So that what is printed of a place is the place.
+double in_whole_centimetres(double length_m) { return std::round(100.0 * length_m) / 100.0; }
+
 // The middles of columns, the scene's middle among them or between them.
 std::vector<double> column_middles(double min_m, double max_m, double spacing_m) {
   const auto count = static_cast<int>(std::ceil((max_m - min_m) / spacing_m));
   const double first_m = 0.5 * (min_m + max_m) - 0.5 * (count - 1) * spacing_m;
   std::vector<double> middles;
-  for (int i = 0; i < count; ++i) middles.push_back(first_m + i * spacing_m);
+  for (int i = 0; i < count; ++i) {
+    middles.push_back(in_whole_centimetres(first_m + i * spacing_m));
+  }
   return middles;
 }
 
@@ -52,7 +57,8 @@ void look_at_column(const Scene& scene, const StandingParameters& parameters, do
   const Eigen::Vector3d top_m(x_m, y_m, bounds.max().z() + 1.0);
   double above_m = std::numeric_limits<double>::infinity();  // the surface over this one
   for (const double floor_m : surfaces_below(scene, top_m, bounds.min().z() - 1.0)) {
-    const Eigen::Vector3d position_m(x_m, y_m, floor_m + parameters.sensor_height_m);
+    const Eigen::Vector3d position_m(x_m, y_m,
+                                     in_whole_centimetres(floor_m + parameters.sensor_height_m));
     const bool stands_on_it = position_m.z() < above_m;
     above_m = floor_m;
     if (!stands_on_it) continue;

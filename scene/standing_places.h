@@ -18,9 +18,9 @@ struct StandingParameters {
 /// Where in a scene a robot could start, best first: sensor positions, each above a surface, clear
 /// of everything and inside the scene. The best sees most of it: of the directions around it fewest
 /// leave the scene, and then it sees the largest volume. A place within 1.5 m of a better one is
-/// left out. On a lattice of columns whose middle is the scene's, so the same for the same scene.
-/// Looks at every storey and at table tops, which are floors as far as a scene tells; those show
-/// less.
+/// left out. On a lattice of columns about the scene's middle, in whole centimetres: the same for
+/// the same scene. Looks at every storey and at table tops, which are floors as far as a scene
+/// tells; those show less.
 /// @param most places that are wanted
 std::vector<Eigen::Vector3d> standing_places(const Scene& scene,
                                              const StandingParameters& parameters,

@@ -76,6 +76,49 @@ TEST(RunSetup, TheCommandLineWinsOverTheScene) {
   EXPECT_DOUBLE_EQ(config.base.start_tilt_rad, -std::numbers::pi / 6.0);
 }
 
+/// A room of which nothing says where to start.
+RunOptions room() {
+  RunOptions options = boxes();
+  options.scene = std::string(NEXTVIEW_SOURCE_DIR) + "/tests/scene/data/room.obj";
+  options.clearance_m = 0.3;
+  return options;
+}
+
+TEST(RunSetup, FindsAStartAndSaysWhich) {
+  RunOptions options = room();
+  options.start_auto = true;
+  const RunSetup setup = prepare_run(options);
+  const Eigen::Vector3d start_m(setup.config.base.start_m);
+  EXPECT_NEAR(start_m.z(), 1.2, 1e-9);
+  ASSERT_FALSE(setup.notes.empty());
+  EXPECT_EQ(setup.notes.front().find("starts where it sees most: --start "), 0U)
+      << setup.notes.front();
+}
+
+TEST(RunSetup, NamesStartsThatWouldDo) {
+  try {
+    prepare_run(room());
+    FAIL() << "a start from nowhere";
+  } catch (const SetupError& error) {
+    const std::string text = error.what();
+    const std::size_t named = text.find("--start ");
+    ASSERT_NE(named, std::string::npos) << text;
+    EXPECT_NE(text.find("--start auto takes the first"), std::string::npos) << text;
+    RunOptions options = room();
+    std::istringstream numbers(text.substr(named + 8));
+    options.start_m.resize(3);
+    for (double& number : options.start_m) ASSERT_TRUE(numbers >> number) << text;
+    EXPECT_NO_THROW(prepare_run(options));
+  }
+}
+
+TEST(RunSetup, SaysWhenThereIsNowhereToStart) {
+  RunOptions options = room();
+  options.start_auto = true;
+  options.clearance_m = 1.9;
+  EXPECT_THROW(prepare_run(options), SetupError);
+}
+
 TEST(RunSetup, LeavesUnitAndAxisToTheFileUnlessTheyAreGiven) {
   RunOptions options;
   options.scene = (kScenes / "boxes" / "boxes.obj").string();
