@@ -2,10 +2,13 @@
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
+#include <iostream>
 #include <numbers>
 
 #include "lcmtypes/parameter_bounds.h"
 #include "lcmtypes/program_version.h"
+#include "runner/scene_file.h"
+#include "scene/mesh_file.h"
 
 namespace nextview {
 namespace {
@@ -50,8 +53,9 @@ void take_start(const std::vector<std::string>& given, RunOptions& options) {
 void add_scene_options(CLI::App& app, RunOptions& options) {
   const std::string group = "Scene";
   app.add_option("SCENE", options.scene,
-                 "boxes, columns, another folder of scenes/, or a CAD file of any format assimp "
-                 "reads (with --start, see there); default: boxes");
+                 "boxes, columns, another folder of scenes/, a CAD file of any format assimp reads "
+                 "(with --start, see there), or a scene file NAME.toml that holds the CAD file's "
+                 "name and options; default: boxes");
   app.add_option_function<std::vector<std::string>>(
          "--start", [&options](const auto& given) { take_start(given, options); },
          "Where the sensor starts: X Y Z in metres, world frame, or auto: where it sees most; "
@@ -359,8 +363,14 @@ std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_sta
   add_planner_options(app, options);
   try {
     app.parse(argc, argv);
+    const std::filesystem::path scene = options.scene.value_or("");
+    if (scene.extension() == ".toml") apply_scene_file(scene, app);
   } catch (const CLI::ParseError& error) {
     exit_status = app.exit(error);
+    return std::nullopt;
+  } catch (const SceneError& error) {
+    std::cerr << program << ": " << error.what() << std::endl;
+    exit_status = 1;
     return std::nullopt;
   }
   return options;
