@@ -3,7 +3,10 @@
 #include <fstream>
 #include <stdexcept>
 
+#include "exporter/mesh_writer.h"
+#include "exporter/oriented_points.h"
 #include "exporter/point_clouds.h"
+#include "exporter/recovered_mesh.h"
 #include "exporter/trajectory.h"
 #include "report/run_report.h"
 
@@ -51,6 +54,12 @@ void write_views_of(const RecoveredRun& run, const ExportOptions& options, std::
   write_views(out, finished);
 }
 
+SurfaceMesh mesh_of(const RecoveredRun& run, const ExportOptions& options) {
+  OrientedPoints points(run.builder.map().grid());
+  for (const RangeImage* image : images_of(run)) points.add(*image);
+  return simplified(recovered_mesh(run.builder.map(), points), options.simplify);
+}
+
 template <class WriteRun>
 ExportFormat stream_format(const std::string& name, const std::string& description,
                            WriteRun write_run) {
@@ -75,6 +84,15 @@ std::vector<ExportFormat> make_formats() {
                       [format](RecoveredRun& run, const ExportOptions&, std::ostream& out) {
                         write_sensed_points(out, format, images_of(run));
                       }));
+  }
+  for (const auto& [ending, format] :
+       {std::pair("ply", MeshFormat::Ply), std::pair("obj", MeshFormat::Obj),
+        std::pair("gltf", MeshFormat::Gltf), std::pair("glb", MeshFormat::Glb)}) {
+    formats.push_back({std::string("mesh.") + ending, "the seen surface in triangles",
+                       [format](RecoveredRun& run, const ExportOptions& options,
+                                const std::filesystem::path& file) {
+                         write_mesh(mesh_of(run, options), format, file);
+                       }});
   }
   formats.push_back(stream_format("poses.csv", "sensor poses, a row a view",
                                   [](RecoveredRun& run, const ExportOptions&, std::ostream& out) {

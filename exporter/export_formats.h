@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "exporter/mesh_simplifier.h"
 #include "logger/recovered_run.h"
 
 namespace nextview {
@@ -15,6 +16,7 @@ struct ExportOptions {
   std::filesystem::path folder_or_log;
   std::optional<std::int64_t> run;  ///< which, when the log holds several
   int max_views = std::numeric_limits<int>::max();
+  SimplifyOptions simplify;  ///< of meshes
 };
 
 /// A file a run can be turned into. Its name is what a user asks for.

@@ -64,6 +64,12 @@ int main(int argc, char** argv) {
   app.add_option("--out", file, "The file to write; default export/FORMAT beside the log");
   app.add_option("--views", options.max_views, "The first views only; default all")
       ->check(CLI::PositiveNumber);
+  app.add_option("--triangles", options.simplify.triangles,
+                 "Meshes: simplify down to about so many triangles")
+      ->check(CLI::PositiveNumber);
+  app.add_option("--error", options.simplify.error_m,
+                 "Meshes: simplify as far as the surface moves by no more than about this, metres")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--run", options.run, "Which run, when the log holds several");
   app.set_version_flag("--version", "nextview_export " + std::string(nextview::program_version()));
   app.footer(format_list());
