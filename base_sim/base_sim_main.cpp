@@ -8,6 +8,6 @@ int main(int argc, char** argv) {
       "along the path the goal gives, or refuses it when its body would touch the run's CAD scene\n"
       "or a limit is in the way, and says which (NEXTVIEW_ARRIVAL).",
       [](nextview::Bus& bus, const nextview::run_config_t& config) {
-        return std::make_unique<nextview::BaseSimProcess>(bus, config);
+        return std::make_unique<nextview::BaseSimProcess>(bus, config, nextview::end_requested);
       });
 }

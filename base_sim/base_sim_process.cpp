@@ -40,9 +40,10 @@ BaseLimits base_limits_of(const run_config_t& config) {
           .body_radius_m = config.base.body_radius_m};
 }
 
-BaseSimProcess::BaseSimProcess(Bus& bus, const run_config_t& config)
+BaseSimProcess::BaseSimProcess(Bus& bus, const run_config_t& config,
+                               const std::function<bool()>& interrupted)
     : bus_(bus),
-      scene_(load_scene(config)),
+      scene_(load_scene(config, interrupted)),
       base_(base_limits_of(config), start_pose_of(config), scene_) {
   bus_.on<goal_t>([this](const goal_t& goal) { goals_[key_of(goal)] = goal; });
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <map>
 #include <optional>
 
@@ -17,7 +18,9 @@ class BaseSimProcess : public BusProcess {
  public:
   /// @throws SceneError when the run's scene cannot be loaded; std::invalid_argument when the run
   ///         cannot start where it should
-  BaseSimProcess(Bus& bus, const run_config_t& config);
+  /// @param interrupted  when to give up loading it, as in LoadLimits
+  BaseSimProcess(Bus& bus, const run_config_t& config,
+                 const std::function<bool()>& interrupted = {});
 
   /// Moves to the next goal.
   bool step() override;

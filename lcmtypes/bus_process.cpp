@@ -24,6 +24,8 @@ void end_on_signals() {
 
 }  // namespace
 
+bool end_requested() { return stop_requested != 0; }
+
 int run_bus_process(int argc, char** argv, const std::string& role, const std::string& about,
                     const MakeBusProcess& make) {
   CLI::App app{about};
@@ -45,9 +47,10 @@ int run_bus_process(int argc, char** argv, const std::string& role, const std::s
   std::optional<Bus> bus;
   try {
     bus.emplace(lcm_url, run, role);
-    serve(*bus, make, [] { return stop_requested != 0; });
+    serve(*bus, make, end_requested);
     return 0;
   } catch (const std::exception& error) {
+    if (end_requested()) return 0;  // what was given up for that is no failure
     std::cerr << "nextview_" << role << ": " << error.what() << std::endl;
     try {
       if (bus) publish_status(*bus, error.what());

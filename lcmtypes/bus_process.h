@@ -26,6 +26,10 @@ class BusProcess {
 using MakeBusProcess =
     std::function<std::unique_ptr<BusProcess>(Bus& bus, const run_config_t& config)>;
 
+/// Whether SIGINT or SIGTERM has asked this process, run by run_bus_process, to end: for work that
+/// takes long and would better be given up.
+bool end_requested();
+
 /// The main of a process: parses the command line (--lcm-url, --run), asks for the run's
 /// configuration until it comes, makes the process, says by a status_t that it is there, and serves
 /// the bus until SIGINT or SIGTERM. Answers requests for status_t.

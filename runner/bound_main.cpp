@@ -58,6 +58,7 @@ void show(const ViewBound& bound) {
 
 int bound(const nextview::RunOptions& options) {
   const nextview::RunSetup setup = nextview::prepare_run(options);
+  nextview::note_signals();  // not before: until here a signal may end this at once
   const nextview::ViewBoundQuestion question = nextview::bound_question_of(options, setup.config);
   const std::string cache = nextview::cache_folder(options.cache);
   const std::string digest = nextview::mesh_digest(setup.scene->mesh());
@@ -83,7 +84,6 @@ int main(int argc, char** argv) {
   int exit_status = 0;
   const auto options = nextview::parse_run_options(argc, argv, exit_status, kDescription);
   if (!options) return exit_status;
-  nextview::note_signals();
   try {
     return bound(*options);
   } catch (const std::exception& error) {

@@ -23,18 +23,6 @@ namespace {
 
 constexpr double kRadPerDegree = std::numbers::pi / 180.0;
 
-std::string_view name_of(UpAxis axis) {
-  switch (axis) {
-    case UpAxis::X:
-      return "x";
-    case UpAxis::Y:
-      return "y";
-    case UpAxis::Z:
-      return "z";
-  }
-  throw std::invalid_argument("not an axis");
-}
-
 SceneOptions given_options(const RunOptions& options) {
   SceneOptions given;
   try {

@@ -1,270 +1,71 @@
 #include "scene/mesh_file.h"
 
-#include <assimp/config.h>
-#include <assimp/importerdesc.h>
-#include <assimp/postprocess.h>
-#include <assimp/scene.h>
-#include <xxhash.h>
-
-#include <assimp/Importer.hpp>
-#include <bit>
 #include <charconv>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <string>
-#include <unordered_map>
-#include <unordered_set>
+#include <utility>
+
+#include "scene/cad_reader.h"
 
 namespace nextview {
 namespace {
 
-// The shapes of a file's nodes: vertices in the world frame, metres, and three of them a triangle.
-struct Shapes {
-  std::vector<Eigen::Vector3f> vertices_m;
-  std::vector<std::uint32_t> corners;
-};
+constexpr const char* kSecondsVariable = "NEXTVIEW_CAD_SECONDS";
+constexpr const char* kMemoryVariable = "NEXTVIEW_CAD_MEMORY_MB";
 
-Eigen::Matrix4d matrix(const aiMatrix4x4& m) {
-  Eigen::Matrix4d result;
-  result << m.a1, m.a2, m.a3, m.a4, m.b1, m.b2, m.b3, m.b4, m.c1, m.c2, m.c3, m.c4, m.d1, m.d2,
-      m.d3, m.d4;
-  return result;
-}
-
-// The rotation from a file's axes to z up.
-Eigen::Matrix4d z_up_from(UpAxis up) {
-  Eigen::Matrix4d rotation = Eigen::Matrix4d::Identity();
-  switch (up) {
-    case UpAxis::X:
-      rotation.topLeftCorner<3, 3>() << 0, -1, 0, 0, 0, -1, 1, 0, 0;
-      break;
-    case UpAxis::Y:
-      rotation.topLeftCorner<3, 3>() << 1, 0, 0, 0, 0, -1, 0, 1, 0;
-      break;
-    case UpAxis::Z:
-      break;
-  }
-  return rotation;
-}
-
-Eigen::Matrix4d scaling(double factor) {
-  Eigen::Matrix4d scale = Eigen::Matrix4d::Identity();
-  scale.diagonal().head<3>().setConstant(factor);
-  return scale;
-}
-
-std::string reader_name(const Assimp::Importer& importer) {
-  const int index = importer.GetPropertyInteger("importerIndex", -1);
-  const aiImporterDesc* reader =
-      index < 0 ? nullptr : importer.GetImporterInfo(static_cast<std::size_t>(index));
-  return reader == nullptr ? std::string() : std::string(reader->mName);
-}
-
-// What takes the root node of the file as assimp returns it to the world frame.
-//
-// COLLADA: assimp multiplies the root node by <unit>, and turns it to y up unless told not to
-// (AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, set when `up` is given). So the axis is either
-// ours or the file's, never both, and a unit that is given first takes the file's out again; the
-// root carries nothing else.
-Eigen::Matrix4d world_from_root(const aiScene& scene, const std::string& reader,
-                                const SceneOptions& options) {
-  if (reader.starts_with("Collada")) {
-    const double file_unit_m = matrix(scene.mRootNode->mTransformation).col(0).head<3>().norm();
-    const double factor = options.unit_m ? *options.unit_m / file_unit_m : 1.0;
-    return z_up_from(options.up.value_or(UpAxis::Y)) * scaling(factor);
-  }
-  const UpAxis up_of_format = reader.starts_with("glTF") ? UpAxis::Y : UpAxis::Z;
-  return z_up_from(options.up.value_or(up_of_format)) * scaling(options.unit_m.value_or(1.0));
-}
-
-// Coordinates as assimp has them are floats, which up to here tell millimetres apart. Beyond, the
-// model has lost detail before any code of ours sees it, so that no shift could bring it back.
-constexpr double kFarthest_m = 8192.0;
-
-void check_range(const Eigen::Vector3d& given_m, const Eigen::Vector3d& world_m,
-                 const std::filesystem::path& file) {
-  const double far_m = std::max(given_m.cwiseAbs().maxCoeff(), world_m.cwiseAbs().maxCoeff());
-  if (!std::isfinite(far_m) || far_m <= kFarthest_m) return;  // not finite: said of the triangle
-  throw SceneError(file.string() + ": a vertex lies " + std::to_string(std::llround(far_m)) +
-                   " m from the origin, where coordinates are no longer exact to a millimetre (" +
-                   std::to_string(std::llround(kFarthest_m)) +
-                   " m at most): move the model to the origin in the program it comes from and "
-                   "export it again, or give the right --unit");
-}
-
-void add_mesh(const aiMesh& mesh, const Eigen::Matrix4d& world_from_mesh,
-              const std::filesystem::path& file, Shapes& shapes) {
-  const auto first = static_cast<std::uint32_t>(shapes.vertices_m.size());
-  const double scale = world_from_mesh.topLeftCorner<3, 3>().colwise().norm().maxCoeff();
-  for (unsigned int i = 0; i < mesh.mNumVertices; ++i) {
-    const aiVector3D& p = mesh.mVertices[i];
-    const Eigen::Vector3d given(p.x, p.y, p.z);
-    const Eigen::Vector4d vertex_m = world_from_mesh * given.homogeneous();
-    check_range(scale * given, vertex_m.head<3>(), file);
-    shapes.vertices_m.push_back(vertex_m.head<3>().cast<float>());
-  }
-  for (unsigned int i = 0; i < mesh.mNumFaces; ++i) {
-    const aiFace& face = mesh.mFaces[i];
-    if (face.mNumIndices != 3) {
-      continue;  // a point or a line
-    }
-    for (unsigned int k = 0; k < 3; ++k) {
-      if (face.mIndices[k] >= mesh.mNumVertices) {
-        throw SceneError(file.string() + ": a triangle names vertex " +
-                         std::to_string(face.mIndices[k]) + " of " +
-                         std::to_string(mesh.mNumVertices) + "; export the file again");
-      }
-      shapes.corners.push_back(first + face.mIndices[k]);
-    }
-  }
-}
-
-// Depth first in the file's order; a mesh that several nodes name appears once for each.
-void add_node(const aiScene& scene, const aiNode& node, const Eigen::Matrix4d& world_from_parent,
-              const std::filesystem::path& file, Shapes& shapes) {
-  const Eigen::Matrix4d world_from_node = world_from_parent * matrix(node.mTransformation);
-  for (unsigned int i = 0; i < node.mNumMeshes; ++i) {
-    add_mesh(*scene.mMeshes[node.mMeshes[i]], world_from_node, file, shapes);
-  }
-  for (unsigned int i = 0; i < node.mNumChildren; ++i) {
-    add_node(scene, *node.mChildren[i], world_from_node, file, shapes);
-  }
-}
-
-struct BytesHash {
-  template <class Array>
-  std::size_t operator()(const Array& array) const {
-    return XXH3_64bits(array.data(), sizeof(array));
-  }
-};
-
-// Numbers equal vertices alike, in the order of their first appearance.
-class VertexTable {
- public:
-  explicit VertexTable(std::size_t expected) { numbers_.reserve(expected); }
-
-  std::uint32_t number_of(const Eigen::Vector3f& vertex_m) {
-    const Eigen::Vector3f v = vertex_m + Eigen::Vector3f::Zero();  // -0 becomes 0
-    const std::array<std::uint32_t, 3> bits{std::bit_cast<std::uint32_t>(v.x()),
-                                            std::bit_cast<std::uint32_t>(v.y()),
-                                            std::bit_cast<std::uint32_t>(v.z())};
-    const auto [entry, is_new] =
-        numbers_.try_emplace(bits, static_cast<std::uint32_t>(vertices_m.size()));
-    if (is_new) {
-      vertices_m.push_back(v);
-    }
-    return entry->second;
-  }
-
-  std::vector<Eigen::Vector3f> vertices_m;
-
- private:
-  std::unordered_map<std::array<std::uint32_t, 3>, std::uint32_t, BytesHash> numbers_;
-};
-
-// Flat to within what float coordinates can tell: lower than a ten-millionth of its longest side.
-bool has_no_area(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
-  const Eigen::Vector3d ab = (b.cast<double>() - a.cast<double>());
-  const Eigen::Vector3d ac = (c.cast<double>() - a.cast<double>());
-  const double longest_squared =
-      std::max({ab.squaredNorm(), ac.squaredNorm(), (ac - ab).squaredNorm()});
-  return ab.cross(ac).norm() <= 1e-7 * longest_squared;
-}
-
-TriangleMesh tidy_mesh(const Shapes& shapes, const std::filesystem::path& file) {
-  constexpr std::uint32_t kNoNumber = 0xffffffff;
-  VertexTable vertices(shapes.vertices_m.size());
-  // Looked up once for each vertex of the file, of which most triangles share theirs.
-  std::vector<std::uint32_t> number(shapes.vertices_m.size(), kNoNumber);
-  std::unordered_set<std::array<std::uint32_t, 3>, BytesHash> seen;
-  seen.reserve(shapes.corners.size() / 3);
-  TriangleMesh mesh;
-  for (std::size_t i = 0; i < shapes.corners.size(); i += 3) {
-    const std::uint32_t* corner = &shapes.corners[i];
-    const auto vertex = [&](std::size_t k) -> const Eigen::Vector3f& {
-      return shapes.vertices_m[corner[k]];
-    };
-    if (!vertex(0).allFinite() || !vertex(1).allFinite() || !vertex(2).allFinite()) {
-      throw SceneError(file.string() + ": triangle " + std::to_string(i / 3) +
-                       " has a coordinate that is not finite; repair the file, or check the "
-                       "unit if one was given");
-    }
-    if (has_no_area(vertex(0), vertex(1), vertex(2))) {
-      continue;
-    }
-    std::array<std::uint32_t, 3> triangle;
-    for (std::size_t k = 0; k < 3; ++k) {
-      std::uint32_t& known = number[corner[k]];
-      if (known == kNoNumber) known = vertices.number_of(vertex(k));
-      triangle[k] = known;
-    }
-    std::array<std::uint32_t, 3> sorted = triangle;
-    std::sort(sorted.begin(), sorted.end());
-    if (seen.insert(sorted).second) {
-      mesh.triangles.push_back(triangle);
-    }
-  }
-  mesh.vertices_m = std::move(vertices.vertices_m);
-  return mesh;
+int limit_from(const char* variable, int otherwise) {
+  const char* text = std::getenv(variable);
+  if (text == nullptr || *text == '\0') return otherwise;
+  int limit = 0;
+  const char* const last = text + std::strlen(text);
+  const auto [end, error] = std::from_chars(text, last, limit);
+  if (error == std::errc() && end == last && limit > 0) return limit;
+  throw SceneError(std::string(variable) + " is '" + text + "': must be a positive whole number");
 }
 
 }  // namespace
 
-TriangleMesh load_mesh(const std::filesystem::path& file, const SceneOptions& options) {
+LoadLimits load_limits() {
+  LoadLimits limits;
+  limits.seconds = limit_from(kSecondsVariable, limits.seconds);
+  limits.memory_mb = limit_from(kMemoryVariable, limits.memory_mb);
+  return limits;
+}
+
+TriangleMesh load_mesh(const std::filesystem::path& file, const SceneOptions& options,
+                       const LoadLimits& limits) {
+  constexpr int kLook_ms = 20;
+  const auto fail = [&file](const std::string& what) {
+    throw SceneError(file.string() + ": " + what);
+  };
+  const auto too_much = [&fail](const std::string& what, const char* variable) {
+    fail("reading it " + what +
+         ", so the file is broken or very large: export it again, reduce it, or set " + variable +
+         " to a higher limit");
+  };
   if (options.unit_m && !(std::isfinite(*options.unit_m) && *options.unit_m > 0.0)) {
-    throw SceneError(file.string() + ": the unit must be a positive length");
+    fail("the unit must be a positive length");
   }
-  std::error_code ignored;
-  if (!std::filesystem::exists(file, ignored)) {
-    throw SceneError(file.string() + ": no such file");
+  CadReader reader(file, options);
+  for (std::int64_t waited_ms = 0; !reader.wait_for_end(kLook_ms); waited_ms += kLook_ms) {
+    if (limits.interrupted && limits.interrupted()) fail("reading it was interrupted by a signal");
+    if (reader.resident_bytes() > std::int64_t{limits.memory_mb} * 1'000'000) {
+      too_much("needed more than " + std::to_string(limits.memory_mb) + " MB", kMemoryVariable);
+    }
+    if (waited_ms >= std::int64_t{limits.seconds} * 1000) {
+      too_much("took longer than " + std::to_string(limits.seconds) + " s", kSecondsVariable);
+    }
   }
-  if (std::filesystem::is_directory(file, ignored)) {
-    throw SceneError(file.string() + ": is a folder; name a CAD file in it");
+  std::optional<CadAnswer> answer = reader.answer();
+  if (!answer) {
+    fail("reading it crashed: the reader " + reader.how_it_ended() +
+         "; the file is broken, or assimp cannot cope with it: export it again, or convert it to "
+         "another format");
   }
-
-  Assimp::Importer importer;
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, options.up.has_value());
-  // Without this a file of bones alone would be given a body of assimp's own making.
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
-  if (scene == nullptr || scene->mRootNode == nullptr) {
-    throw SceneError(file.string() + ": cannot be read as a CAD file (" +
-                     importer.GetErrorString() +
-                     "); convert it to a format assimp reads, for example OBJ, PLY, STL, COLLADA "
-                     "or glTF");
-  }
-
-  Shapes shapes;
-  add_node(*scene, *scene->mRootNode, world_from_root(*scene, reader_name(importer), options), file,
-           shapes);
-  TriangleMesh mesh = tidy_mesh(shapes, file);
-  if (mesh.triangles.empty()) {
-    throw SceneError(file.string() +
-                     ": has no triangles with an area; export the surfaces as polygons");
-  }
-  return mesh;
-}
-
-UpAxis parse_up_axis(std::string_view text) {
-  if (text == "x" || text == "X") return UpAxis::X;
-  if (text == "y" || text == "Y") return UpAxis::Y;
-  if (text == "z" || text == "Z") return UpAxis::Z;
-  throw std::invalid_argument("up axis '" + std::string(text) + "': must be x, y or z");
-}
-
-double parse_unit_m(std::string_view text) {
-  if (text == "m") return 1.0;
-  if (text == "cm") return 0.01;
-  if (text == "mm") return 0.001;
-  if (text == "in") return 0.0254;
-  if (text == "ft") return 0.3048;
-  double metres = 0.0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), metres);
-  if (error == std::errc() && end == text.data() + text.size() && std::isfinite(metres) &&
-      metres > 0.0) {
-    return metres;
-  }
-  throw std::invalid_argument("unit '" + std::string(text) +
-                              "': must be m, cm, mm, in, ft or a positive number of metres");
+  if (!answer->mesh) throw SceneError(answer->why_not);
+  return *std::move(answer->mesh);
 }
 
 }  // namespace nextview

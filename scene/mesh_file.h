@@ -1,45 +1,38 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
-#include <stdexcept>
-#include <string_view>
+#include <functional>
 
+#include "scene/scene_options.h"
 #include "scene/triangle_mesh.h"
 
 namespace nextview {
 
-/// A scene that cannot be used; the message names the file and says what to do.
-class SceneError : public std::runtime_error {
-  using std::runtime_error::runtime_error;
+/// How much reading a CAD file may take.
+struct LoadLimits {
+  int seconds = 60;      ///< at least so long is waited, on a busy machine a little longer
+  int memory_mb = 4096;  ///< resident, 10^6 bytes
+  /// Asked every few milliseconds: whether the user has had enough.
+  std::function<bool()> interrupted = {};
 };
 
-/// The axis of a CAD file that points up in the world.
-enum class UpAxis { X, Y, Z };
-
-/// "x", "y" or "z", either case.
-/// @throws std::invalid_argument for anything else
-UpAxis parse_up_axis(std::string_view text);
-
-/// "m", "cm", "mm", "in", "ft" or a positive number of metres such as "0.0042".
-/// @throws std::invalid_argument for anything else
-double parse_unit_m(std::string_view text);
-
-/// How to read a CAD file's coordinates. What is left unset is what the file itself says: COLLADA
-/// by its <up_axis> and <unit>, glTF by its specification (y up, metres). Every other format is
-/// read as z up and metres; most say nothing, and what FBX may say is not asked.
-struct SceneOptions {
-  std::optional<double> unit_m = {};  ///< length of the file's unit of length
-  std::optional<UpAxis> up = {};      ///< the file's axis that becomes the world's z
-};
+/// The limits of NEXTVIEW_CAD_SECONDS and NEXTVIEW_CAD_MEMORY_MB of the environment, which every
+/// program of a run inherits, or else those above.
+/// @throws SceneError when one of them is set to something else than a positive whole number
+LoadLimits load_limits();
 
 /// Loads the triangles of any file assimp reads, every node's transform applied, in a fixed order.
 ///
 /// Points and lines, triangles of no area and exact duplicates (the same three corners in any order
 /// of them) are left out. Y up becomes z up by the rotation (x, y, z) -> (x, -z, y), x up by
 /// (x, y, z) -> (-y, -z, x), as COLLADA has it.
-/// @throws SceneError when there is no such file, assimp cannot read it, it has no triangles, or a
-/// coordinate is not finite or so large that a float no longer tells millimetres apart
-TriangleMesh load_mesh(const std::filesystem::path& file, const SceneOptions& options = {});
+///
+/// The file is read by a process of its own, nextview_cad_reader beside the running program, so
+/// that whatever is in it neither stops nor ends this one.
+/// @throws SceneError when there is no such file, assimp cannot read it, it has no triangles, a
+/// coordinate is not finite or so large that a float no longer tells millimetres apart, it takes
+/// more than the limits, the reader crashes over it, or the user has had enough
+TriangleMesh load_mesh(const std::filesystem::path& file, const SceneOptions& options = {},
+                       const LoadLimits& limits = load_limits());
 
 }  // namespace nextview

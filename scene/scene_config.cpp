@@ -5,12 +5,14 @@
 
 namespace nextview {
 
-Scene load_scene(const run_config_t& config) {
+Scene load_scene(const run_config_t& config, const std::function<bool()>& interrupted) {
   if (config.has_scene == 0) throw SceneError("the run has no scene to simulate");
   SceneOptions options;
   if (config.scene.unit_m > 0.0) options.unit_m = config.scene.unit_m;
   if (!config.scene_up.empty()) options.up = parse_up_axis(config.scene_up);
-  TriangleMesh mesh = load_mesh(config.scene_file, options);
+  LoadLimits limits = load_limits();
+  limits.interrupted = interrupted;
+  TriangleMesh mesh = load_mesh(config.scene_file, options, limits);
   const std::string digest = mesh_digest(mesh);
   if (digest != config.scene_digest) {
     throw SceneError(config.scene_file + ": its triangles have digest " + digest +

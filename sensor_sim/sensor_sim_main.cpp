@@ -6,6 +6,6 @@ int main(int argc, char** argv) {
       "The simulated range sensor of a nextview run. For every arrival of the base it casts the\n"
       "sensor's rays into the run's CAD scene and publishes a range image (NEXTVIEW_RANGE_IMAGE).",
       [](nextview::Bus& bus, const nextview::run_config_t& config) {
-        return std::make_unique<nextview::SensorSimProcess>(bus, config);
+        return std::make_unique<nextview::SensorSimProcess>(bus, config, nextview::end_requested);
       });
 }

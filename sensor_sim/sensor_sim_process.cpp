@@ -19,10 +19,11 @@ constexpr int kViewsRemembered = 8;
 
 }  // namespace
 
-SensorSimProcess::SensorSimProcess(Bus& bus, const run_config_t& config)
+SensorSimProcess::SensorSimProcess(Bus& bus, const run_config_t& config,
+                                   const std::function<bool()>& interrupted)
     : bus_(bus),
       config_(config),
-      scene_(load_scene(config)),
+      scene_(load_scene(config, interrupted)),
       rays_(make_ray_table(sensor_of(config))) {
   bus_.on<arrival_t>([this](const arrival_t& arrival) {
     if (arrival.arrived == 0) return;

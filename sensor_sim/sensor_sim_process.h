@@ -1,6 +1,7 @@
 #pragma once
 
 #include <deque>
+#include <functional>
 #include <map>
 
 #include "lcmtypes/bus_process.h"
@@ -13,7 +14,9 @@ namespace nextview {
 class SensorSimProcess : public BusProcess {
  public:
   /// @throws SceneError when the run's scene cannot be loaded
-  SensorSimProcess(Bus& bus, const run_config_t& config);
+  /// @param interrupted  when to give up loading it, as in LoadLimits
+  SensorSimProcess(Bus& bus, const run_config_t& config,
+                   const std::function<bool()>& interrupted = {});
 
   /// Scans at the next arrival.
   bool step() override;

@@ -1,14 +1,22 @@
 #include "scene/mesh_file.h"
 
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
-#include <filesystem>
-#include <fstream>
 
 #include <algorithm>
+#include <atomic>
+#include <cerrno>
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
 #include <functional>
 #include <set>
+#include <thread>
+#include <vector>
+
+#include "scene/cad_file.h"
 
 #include "tests/scene/test_worlds.h"
 
@@ -27,6 +35,9 @@ std::string message_of(const std::function<void()>& action) {
 std::string load_failure(const std::string& name) {
   return message_of([&] { load_mesh(kDataFolder / name); });
 }
+
+/// Of those who read for load_mesh, none may stay behind.
+bool no_child_is_left() { return ::waitpid(-1, nullptr, WNOHANG) < 0 && errno == ECHILD; }
 
 void expect_triangle(const TriangleMesh& mesh, std::size_t triangle, const Eigen::Vector3d& a,
                      const Eigen::Vector3d& b, const Eigen::Vector3d& c) {
@@ -159,6 +170,103 @@ TEST(LoadMesh, RefusesWhatLiesSoFarOffThatFloatsAreTooCoarse) {
     }
   }
   std::filesystem::remove(file);
+}
+
+TEST(LoadMesh, GivesUpAFileThatTakesForEver) {
+  LoadLimits limits;
+  limits.seconds = 1;
+  const std::string why = message_of([&] { load_mesh(kDataFolder / "endless.ply", {}, limits); });
+  EXPECT_NE(why.find("endless.ply: reading it took longer than 1 s"), std::string::npos) << why;
+  EXPECT_NE(why.find("export it again"), std::string::npos) << why;
+  EXPECT_NE(why.find("NEXTVIEW_CAD_SECONDS"), std::string::npos) << why;
+  EXPECT_TRUE(no_child_is_left());
+}
+
+TEST(LoadMesh, GivesUpAFileThatFillsTheMemory) {
+  LoadLimits limits;
+  limits.memory_mb = 300;
+  const std::string why =
+      message_of([&] { load_mesh(kDataFolder / "huge_count.off", {}, limits); });
+  EXPECT_NE(why.find("huge_count.off: reading it needed more than 300 MB"), std::string::npos)
+      << why;
+  EXPECT_NE(why.find("NEXTVIEW_CAD_MEMORY_MB"), std::string::npos) << why;
+  EXPECT_TRUE(no_child_is_left());
+}
+
+TEST(LoadMesh, OutlivesAFileThatMakesAssimpAbort) {
+  const std::string why = load_failure("abort.off");
+  EXPECT_NE(why.find("abort.off: reading it crashed: the reader was killed by signal 6"),
+            std::string::npos)
+      << why;
+  EXPECT_NE(why.find("convert it to another format"), std::string::npos) << why;
+  EXPECT_TRUE(no_child_is_left());
+}
+
+TEST(LoadMesh, GivesUpWhenTheUserHasHadEnough) {
+  LoadLimits limits;
+  int asked = 0;
+  limits.interrupted = [&asked] { return ++asked == 3; };
+  const std::string why = message_of([&] { load_mesh(kDataFolder / "endless.ply", {}, limits); });
+  EXPECT_NE(why.find("endless.ply: reading it was interrupted"), std::string::npos) << why;
+  EXPECT_EQ(asked, 3);
+  EXPECT_TRUE(no_child_is_left());
+}
+
+// What another process has read is what this one would have.
+TEST(LoadMesh, IsReadCadFileInAProcessOfItsOwn) {
+  int read = 0;
+  for (const char* name : {"room.obj", "untidy_room.obj", "triangle.ply", "triangle.stl",
+                           "two_nodes.gltf", "x_up.dae", "y_up.dae", "z_up.dae"}) {
+    for (const SceneOptions& options :
+         {SceneOptions{}, SceneOptions{.unit_m = 0.1 / 3.0, .up = UpAxis::X}}) {
+      const TriangleMesh here = read_cad_file(kDataFolder / name, options);
+      const TriangleMesh there = load_mesh(kDataFolder / name, options);
+      EXPECT_EQ(there.vertices_m, here.vertices_m) << name;
+      EXPECT_EQ(there.triangles, here.triangles) << name;
+      ++read;
+    }
+  }
+  EXPECT_EQ(read, 16);
+}
+
+TEST(LoadMesh, WorksInManyThreadsAtOnce) {
+  const std::string digest = mesh_digest(load_mesh(kDataFolder / "room.obj"));
+  std::atomic<int> same = 0;
+  {
+    std::vector<std::jthread> threads;
+    for (int i = 0; i < 4; ++i) {
+      threads.emplace_back([&] {
+        for (int k = 0; k < 5; ++k) {
+          same += mesh_digest(load_mesh(kDataFolder / "room.obj")) == digest ? 1 : 0;
+        }
+      });
+    }
+  }
+  EXPECT_EQ(same, 20);
+  EXPECT_TRUE(no_child_is_left());
+}
+
+TEST(LoadLimits, AreThoseOfTheEnvironment) {
+  const auto with = [](const char* seconds, const char* memory_mb) {
+    ::setenv("NEXTVIEW_CAD_SECONDS", seconds, 1);
+    ::setenv("NEXTVIEW_CAD_MEMORY_MB", memory_mb, 1);
+  };
+  EXPECT_EQ(load_limits().seconds, LoadLimits{}.seconds);
+  with("7", "123");
+  EXPECT_EQ(load_limits().seconds, 7);
+  EXPECT_EQ(load_limits().memory_mb, 123);
+  with("", "");
+  EXPECT_EQ(load_limits().seconds, LoadLimits{}.seconds);
+  EXPECT_EQ(load_limits().memory_mb, LoadLimits{}.memory_mb);
+  for (const char* text : {"0", "-1", "1.5", "ten", "5s", "99999999999"}) {
+    with(text, "");
+    EXPECT_EQ(message_of([] { load_limits(); }), "NEXTVIEW_CAD_SECONDS is '" + std::string(text) +
+                                                     "': must be a positive whole number");
+    with("", text);
+    EXPECT_EQ(message_of([] { load_limits(); }).find("NEXTVIEW_CAD_MEMORY_MB is '"), 0U);
+  }
+  ::unsetenv("NEXTVIEW_CAD_SECONDS");
+  ::unsetenv("NEXTVIEW_CAD_MEMORY_MB");
 }
 
 TEST(MeshDigest, IsThatOfTheTrianglesAndFixed) {
