@@ -4,7 +4,7 @@ eval terminal_options
 set output out
 set multiplot layout 1,2 title heading font ",14"
 set view equal xyz
-set view 62,28,1.75
+set view 62,28,1.48
 set xyplane relative 0
 set border 0
 unset tics

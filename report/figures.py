@@ -161,7 +161,10 @@ def draw_search(run, out, scratch):
 
 
 def draw_curves(scene, runs, out, scratch):
-    variables = {"size": (1200, 1150), "heading": f"Recovery of {scene}, strategy {runs[0].strategy}"}
+    heading = f"Recovery of {scene}, strategy {runs[0].strategy}"
+    if len({run.seed for run in runs}) > 1:
+        heading += ": mean over the seeds; shaded, the least to the most"
+    variables = {"size": (1200, 1150), "heading": heading}
     area = positions = 0.0
     for quality in ("off", "on"):
         of = [run for run in runs if run.quality == (quality == "on")]
