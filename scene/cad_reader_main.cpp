@@ -9,8 +9,10 @@
 #include <cstdlib>
 #include <exception>
 #include <fstream>
+#include <string>
 #include <string_view>
 
+#include "lcmtypes/program_version.h"
 #include "scene/cad_answer.h"
 #include "scene/cad_file.h"
 
@@ -49,13 +51,21 @@ bool answer_into(std::FILE* file, char** argv) {
   }
 }
 
+/// --help, --version, or a wrong command line.
+int explain(std::string_view asked) {
+  if (asked == "--version") {
+    const std::string version(nextview::program_version());
+    std::printf("nextview_cad_reader %s\n", version.c_str());
+    return 0;
+  }
+  std::fputs(kUsage, asked == "--help" ? stdout : stderr);
+  return asked == "--help" ? 0 : 1;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc != 5) {
-    std::fputs(kUsage, argc == 2 && std::string_view(argv[1]) == "--help" ? stdout : stderr);
-    return argc == 2 ? 0 : 1;
-  }
+  if (argc != 5) return explain(argc == 2 ? argv[1] : "");
   be_expendable(std::atoi(argv[1]));
   std::FILE* answer = take_stdout();
   // Nothing is taken down: the system takes the memory back faster.

@@ -46,7 +46,7 @@ const std::map<std::string, Arrows> kArrows = {
 /// Folders that are on the bus as a whole; of the others the files that are named so.
 const Folders kOnTheBus = {"lcmtypes", "logger", "report", "exporter", "runner"};
 /// Folders that hold no part of the system.
-const Folders kNotOurs = {"tests", "bench"};
+const Folders kNotOurs = {"tests", "bench", "examples"};
 
 /// Of a folder on the bus, but without the bus, and for everybody: what a parameter may be is said
 /// once.
