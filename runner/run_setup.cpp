@@ -175,9 +175,10 @@ void fill_planner(run_config_t& config, const RunOptions& options) {
 }
 
 std::string lift_in_words(const run_config_t& config, double floor_m) {
-  return "the floor under the start is at " + two_decimals(floor_m) +
-         " m; the lift moves the sensor from " + two_decimals(config.base.lift_min_m) + " to " +
-         two_decimals(config.base.lift_max_m) + " m (--lift-min, --lift-max)";
+  return fmt::format(
+      "the floor under the start is at {:.2f} m; the lift moves the sensor from "
+      "{:.2f} to {:.2f} m (--lift-min, --lift-max)",
+      floor_m, config.base.lift_min_m, config.base.lift_max_m);
 }
 
 /// The start must be a place where the base can be, and at the planner's clearance, or nothing
@@ -186,8 +187,8 @@ void check_start(const run_config_t& config, double floor_m, const Scene& scene)
   const SensorPose start = start_pose_of(config);
   const double height_m = start.position_m.z();
   if (height_m < config.base.lift_min_m || height_m > config.base.lift_max_m) {
-    throw SetupError("--start: a height of " + two_decimals(height_m) +
-                     " m is beyond the lift: " + lift_in_words(config, floor_m));
+    throw SetupError(fmt::format("--start: a height of {:.2f} m is beyond the lift: {}", height_m,
+                                 lift_in_words(config, floor_m)));
   }
   try {
     const Base base(base_limits_of(config), start, scene);
