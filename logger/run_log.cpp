@@ -34,7 +34,7 @@ void RunLog::take(const LoggedMessage& message) {
     take_as<Message>(message);
   });
   // LCM_SELF_TEST, which every program on the bus starts with, is nobody's message.
-  if (!ours && message.channel != "LCM_SELF_TEST") ++counters_.strangers;
+  if (!ours && message.channel != "LCM_SELF_TEST") ++counters_.foreign;
 }
 
 template <class Message>
@@ -52,7 +52,7 @@ void RunLog::take_as(const LoggedMessage& message) {
     }
   }
   if (decoded.message->run != *run_) {
-    ++counters_.strangers;
+    ++counters_.foreign;
     return;
   }
   ++counters_.ours;
@@ -62,7 +62,7 @@ void RunLog::take_as(const LoggedMessage& message) {
     const auto [seen, is_new] =
         seen_.emplace(std::pair(message.channel, key), Hash(hash.high64, hash.low64));
     if (!is_new) {
-      ++counters_.duplicates;
+      ++counters_.repeated;
       if (seen->second == Hash(hash.high64, hash.low64)) return;
       if constexpr (std::is_same_v<Message, stop_t>) {
         // A planner's end and the run's own can cross each other.

@@ -18,10 +18,10 @@ namespace nextview {
 
 /// What was found in a log.
 struct LogCounters {
-  std::int64_t messages = 0;    ///< in all
-  std::int64_t ours = 0;        ///< of the run
-  std::int64_t strangers = 0;   ///< of other runs, or on channels that are not ours
-  std::int64_t duplicates = 0;  ///< the same again, which is how lost messages are made good
+  std::int64_t messages = 0;  ///< in all
+  std::int64_t ours = 0;      ///< of the run
+  std::int64_t foreign = 0;   ///< of other runs, or on channels that are not ours
+  std::int64_t repeated = 0;  ///< the same again, which is how lost messages are made good
 };
 
 /// Reads the messages of one run out of its log, through the same decode-and-validate path as the

@@ -156,9 +156,8 @@ void write_summary(std::ostream& out, const FinishedRun& run) {
                               {"foreign", status.foreign},
                               {"refused", status.refused}};
   }
-  json["log"] = {{"messages", run.log.messages},
-                 {"duplicates", run.log.duplicates},
-                 {"strangers", run.log.strangers}};
+  json["log"] = {
+      {"messages", run.log.messages}, {"repeated", run.log.repeated}, {"foreign", run.log.foreign}};
   if (run.visible) {
     json["visible_surface"] = {{"area_m2", run.visible->area_m2()},
                                {"samples", run.visible->points_m.size()},

@@ -31,13 +31,31 @@ std::set<MissingMessage> lacking_in_log(const RunRecord& logged, const RunRecord
   return lacking;
 }
 
+bool publish_again(Bus& bus, const MissingMessage& missing, const RunRecord& heard) {
+  const auto publish = [&bus](const auto* message) {
+    if (message != nullptr) bus.publish(*message);
+    return message != nullptr;
+  };
+  const int view = missing.view;
+  if (missing.channel == Channel<goal_t>::name) return publish(heard.goal(view, missing.attempt));
+  if (missing.channel == Channel<search_t>::name) {
+    return publish(heard.search(view, missing.attempt));
+  }
+  if (missing.channel == Channel<arrival_t>::name) {
+    return publish(heard.arrival(view, missing.attempt));
+  }
+  return missing.channel == Channel<commit_t>::name && publish(heard.commit(view));
+}
+
 void read_log_to_its_end(RunLog& log, Bus& bus, const HeardRun& heard) {
   // The recorder is behind. Neither it nor the view under way is waited for when it does not get
   // on, nor for ever.
   constexpr milliseconds kQuiet{100};
   constexpr milliseconds kPatience{1000};
   constexpr milliseconds kLongest{10000};
-  AskTimer reminder(milliseconds(20), milliseconds(2000));
+  // lcm-logger's queue holds 30 messages.
+  constexpr std::size_t kAtATime = 16;
+  AskTimer reminder(milliseconds(20), milliseconds(500));
   const auto start = Clock::now();
   auto grew = start;
   std::size_t had = 0;
@@ -49,20 +67,27 @@ void read_log_to_its_end(RunLog& log, Bus& bus, const HeardRun& heard) {
     if (const std::size_t has = logged.held().size(); has != had) {
       had = has;
       grew = now;
+      reminder.restart();
     }
     const std::set<MissingMessage> lacking = lacking_in_log(logged, heard.record);
     const bool whole = lacking.empty() && logged.latest_view() == logged.committed_views();
     if (now - grew > (whole ? kQuiet : kPatience) || now - start > kLongest) return;
     if (!reminder.due()) continue;
     bus.request<status_t>(0, 0);  // the recorder writes out what it holds when more comes
-    for (const MissingMessage& message : lacking) request(bus, message);
+    std::size_t asked = 0;
+    for (const MissingMessage& message : lacking) {
+      if (++asked > kAtATime) break;
+      if (!publish_again(bus, message, heard.record)) request(bus, message);
+    }
   }
 }
 
 void publish_into_log(const stop_t& stop, RunLog& log, Bus& bus) {
   bus.publish(stop);
-  const auto until = Clock::now() + milliseconds(1000);
+  AskTimer again(milliseconds(20), milliseconds(200));
+  const auto until = Clock::now() + milliseconds(2000);
   while (!log.record().stop() && Clock::now() < until) {
+    if (again.due()) bus.publish(stop);
     bus.handle(milliseconds(5));
     log.read_on();
   }

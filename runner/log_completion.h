@@ -14,11 +14,15 @@ void request(Bus& bus, const MissingMessage& missing);
 /// What has been heard, or must have been said, and is not in the log.
 std::set<MissingMessage> lacking_in_log(const RunRecord& logged, const RunRecord& heard);
 
-/// Reads what the recorder still writes of a run that ends early, and asks for what it lacks: the
-/// view under way still counts. Ends when all is there, or nothing more comes.
+/// Publishes once more what has been heard here, the same bytes: whoever said it may be no more.
+/// @return false when it is not here, or is a range image, of which only the pixels are kept
+bool publish_again(Bus& bus, const MissingMessage& missing, const RunRecord& heard);
+
+/// Reads what the recorder still writes of a run that ends early, and has what it lacks published
+/// again: the view under way still counts. Ends when all is there, or nothing more comes.
 void read_log_to_its_end(RunLog& log, Bus& bus, const HeardRun& heard);
 
-/// Publishes an end of the run and waits until it is in the log, for a second at most.
+/// Publishes an end of the run until it is in the log, for two seconds at most.
 void publish_into_log(const stop_t& stop, RunLog& log, Bus& bus);
 
 }  // namespace nextview

@@ -3,16 +3,14 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <exception>
 #include <limits>
 #include <map>
-#include <mutex>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <tuple>
 
 #include "planner/prediction/orientations.h"
+#include "scoring/on_all_cores.h"
 #include "sensor_sim/scan.h"
 
 namespace nextview {
@@ -154,26 +152,13 @@ PoseCover cover_of_poses(const Scene& scene, const SensorPose& start,
   for (std::size_t first = 0; first < cover.poses.size(); first += kPosesAtATime) {
     covered.assign(std::min(kPosesAtATime, cover.poses.size() - first), {});
     std::atomic<std::size_t> next = 0;
-    std::mutex failing;
-    std::exception_ptr failure;
-    const auto work = [&] {
-      try {
-        CoverFinder finder(scene, rays, parameters.limits, voxels);
-        for (std::size_t i = next++; i < covered.size() && !stop.stop_requested(); i = next++) {
-          covered[i] = finder.covered_from(cover.poses[first + i]);
-          ++progress->done;
-        }
-      } catch (...) {
-        const std::lock_guard lock(failing);
-        failure = std::current_exception();
+    on_all_cores([&] {
+      CoverFinder finder(scene, rays, parameters.limits, voxels);
+      for (std::size_t i = next++; i < covered.size() && !stop.stop_requested(); i = next++) {
+        covered[i] = finder.covered_from(cover.poses[first + i]);
+        ++progress->done;
       }
-    };
-    {
-      std::vector<std::jthread> others;
-      for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) others.emplace_back(work);
-      work();
-    }
-    if (failure) std::rethrow_exception(failure);
+    });
     if (stop.stop_requested()) return cover;
     for (std::size_t i = 0; i < covered.size(); ++i) {
       const double distance_m = (cover.poses[first + i].position_m - start.position_m).norm();

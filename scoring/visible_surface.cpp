@@ -1,13 +1,11 @@
 #include "scoring/visible_surface.h"
 
 #include <algorithm>
-#include <exception>
-#include <mutex>
 #include <optional>
-#include <thread>
 
 #include "scoring/coverage_unknown.h"
 #include "scoring/kept_file.h"
+#include "scoring/on_all_cores.h"
 #include "scoring/position_tree.h"
 #include "scoring/surface_samples.h"
 
@@ -34,8 +32,7 @@ Question question_of(const Scene& scene, const Eigen::Vector3d& start_m,
   return question;
 }
 
-/// Tells of each sample whether it can be seen from the positions, on all cores. The threads are
-/// started by the one that calls and so, on Linux, have its priority.
+/// Tells of each sample whether it can be seen from the positions, on all cores.
 std::vector<std::uint8_t> seen_samples(const Scene& scene, const Question& question,
                                        double range_max_m, const std::stop_token& stop,
                                        VisibilityProgress& progress) {
@@ -46,31 +43,18 @@ std::vector<std::uint8_t> seen_samples(const Scene& scene, const Question& quest
   std::vector<std::uint8_t> seen(samples.size(), 0);
   progress.of = static_cast<std::int64_t>(samples.size());
   std::atomic<std::size_t> next = 0;
-  std::mutex failing;
-  std::exception_ptr failure;
-  const auto work = [&] {
-    try {
-      PositionSearch search(scene, neighbours, tree, range_max_m);
-      while (!stop.stop_requested()) {
-        const std::size_t first = next.fetch_add(kSamplesAtATime);
-        const std::size_t last = std::min(first + kSamplesAtATime, samples.size());
-        if (first >= last) return;
-        for (std::size_t i = first; i < last && !stop.stop_requested(); ++i) {
-          seen[i] = search.sees(samples[i].cast<double>()) ? 1 : 0;
-        }
-        progress.done += static_cast<std::int64_t>(last - first);
+  on_all_cores([&] {
+    PositionSearch search(scene, neighbours, tree, range_max_m);
+    while (!stop.stop_requested()) {
+      const std::size_t first = next.fetch_add(kSamplesAtATime);
+      const std::size_t last = std::min(first + kSamplesAtATime, samples.size());
+      if (first >= last) return;
+      for (std::size_t i = first; i < last && !stop.stop_requested(); ++i) {
+        seen[i] = search.sees(samples[i].cast<double>()) ? 1 : 0;
       }
-    } catch (...) {
-      const std::lock_guard lock(failing);
-      failure = std::current_exception();
+      progress.done += static_cast<std::int64_t>(last - first);
     }
-  };
-  {
-    std::vector<std::jthread> others;
-    for (unsigned i = 1; i < std::thread::hardware_concurrency(); ++i) others.emplace_back(work);
-    work();
-  }
-  if (failure) std::rethrow_exception(failure);
+  });
   return seen;
 }
 

@@ -9,6 +9,7 @@
 
 #include "lcmtypes/bus.h"
 #include "lcmtypes/multicast_probe.h"
+#include "runner/port_lock.h"
 #include "tests/lcmtypes/examples.h"
 
 namespace nextview {
@@ -16,13 +17,9 @@ namespace {
 
 using std::chrono::milliseconds;
 
-// A port of this test's own.
-std::string url() {
-  return "udpm://239.255.76.67:" + std::to_string(20000 + getpid() % 20000) + "?ttl=0";
-}
-
 TEST(LcmTransport, CarriesMessagesBetweenTwoBuses) {
-  const std::string place = url();
+  const PortLock port = PortLock::acquire();
+  const std::string place = port.lcm_url();
   Bus planner(place, 7, "planner");
   Bus mapper(place, 7, "mapper");
   std::vector<goal_t> received;
@@ -42,7 +39,8 @@ TEST(LcmTransport, CarriesMessagesBetweenTwoBuses) {
 }
 
 TEST(LcmTransport, AnswersRequests) {
-  const std::string place = url();
+  const PortLock port = PortLock::acquire();
+  const std::string place = port.lcm_url();
   Bus planner(place, 7, "planner");
   Bus mapper(place, 7, "mapper");
   planner.publish(example<goal_t>());  // before the mapper listens
@@ -57,7 +55,8 @@ TEST(LcmTransport, AnswersRequests) {
 }
 
 TEST(LcmTransport, AHandlersExceptionPassesThroughLcm) {
-  const std::string place = url();
+  const PortLock port = PortLock::acquire();
+  const std::string place = port.lcm_url();
   Bus planner(place, 7, "planner");
   Bus mapper(place, 7, "mapper");
   mapper.on<goal_t>([](const goal_t&) { throw std::runtime_error("a fault of our own"); });
@@ -70,7 +69,8 @@ TEST(LcmTransport, AHandlersExceptionPassesThroughLcm) {
 }
 
 TEST(LcmTransport, RefusesWhatLcmWouldCutIntoFragments) {
-  LcmTransport transport(url());
+  const PortLock port = PortLock::acquire();
+  LcmTransport transport(port.lcm_url());
   EXPECT_THROW(transport.publish("NEXTVIEW_GOAL", std::vector<std::uint8_t>(kMaxMessageBytes + 1)),
                std::logic_error);
   EXPECT_NO_THROW(transport.publish("NEXTVIEW_GOAL", std::vector<std::uint8_t>(kMaxMessageBytes)));
@@ -100,7 +100,7 @@ TEST(LcmTransport, WithoutAMulticastRouteSaysWhatToType) {
   ASSERT_GE(child, 0);
   if (child == 0) {
     if (unshare(CLONE_NEWUSER | CLONE_NEWNET) != 0) _exit(2);
-    const std::string error = error_of(url());
+    const std::string error = error_of(PortLock::acquire().lcm_url());
     _exit(write(message[1], error.data(), error.size()) > 0 ? 0 : 3);
   }
   close(message[1]);

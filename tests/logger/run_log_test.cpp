@@ -61,7 +61,7 @@ TEST_F(WrittenLog, IsReadAsItGrows) {
   EXPECT_NE(log.record().goal(1, 1), nullptr);
   EXPECT_EQ(log.counters().messages, 2);
   EXPECT_EQ(log.counters().ours, 2);
-  EXPECT_EQ(log.counters().duplicates, 0);
+  EXPECT_EQ(log.counters().repeated, 0);
 }
 
 TEST_F(WrittenLog, AMessageHalfWrittenIsReadWhenItIsWhole) {
@@ -91,7 +91,7 @@ TEST_F(WrittenLog, MessagesBeforeTheConfigurationCount) {
   EXPECT_NE(read().record().goal(1, 1), nullptr);
 }
 
-TEST_F(WrittenLog, StrangersAreCounted) {
+TEST_F(WrittenLog, ForeignMessagesAreCounted) {
   write(config_message());
   goal_t of_another_run = goal_of(1, 1);
   ++of_another_run.run;
@@ -99,7 +99,7 @@ TEST_F(WrittenLog, StrangersAreCounted) {
   write_bytes("SOMEBODY_ELSE", {1, 2, 3});
   write_bytes("LCM_SELF_TEST", {1, 2, 3});
   const RunLog log = read();
-  EXPECT_EQ(log.counters().strangers, 2);
+  EXPECT_EQ(log.counters().foreign, 2);
   EXPECT_EQ(log.counters().ours, 1);
   EXPECT_EQ(log.record().goal(1, 1), nullptr);
 }
@@ -113,16 +113,16 @@ TEST_F(WrittenLog, OtherRunsAreNamedAndOneCanBeChosen) {
   EXPECT_EQ(read(other.run).record().config()->run, other.run);
 }
 
-TEST_F(WrittenLog, DuplicatesAreCountedWhenTheyAreTheSame) {
+TEST_F(WrittenLog, RepeatedMessagesAreCountedWhenTheyAreTheSame) {
   write(config_message());
   write(goal_of(1, 1));
   write(goal_of(1, 1));
   const RunLog log = read();
-  EXPECT_EQ(log.counters().duplicates, 1);
+  EXPECT_EQ(log.counters().repeated, 1);
   EXPECT_TRUE(log.contradictions().empty());
 }
 
-TEST_F(WrittenLog, DuplicatesThatDifferAreAContradiction) {
+TEST_F(WrittenLog, RepeatedMessagesThatDifferAreAContradiction) {
   write(config_message());
   write(goal_of(1, 1));
   goal_t other = goal_of(1, 1);

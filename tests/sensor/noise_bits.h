@@ -10,8 +10,8 @@ namespace nextview {
 
 /// Mixes of the bits of many numbers.
 struct NoiseBits {
-  std::uint64_t noise = 0;    ///< of RandomStream::gaussian
-  std::uint64_t library = 0;  ///< of the C library's log and cos
+  std::uint64_t noise = 0;  ///< of RandomStream::gaussian
+  std::uint64_t libc = 0;   ///< of the C library's log and cos
 };
 
 inline NoiseBits noise_bits() {
@@ -23,7 +23,7 @@ inline NoiseBits noise_bits() {
   for (int i = 0; i < 200'000; ++i) {
     mix(bits.noise, stream.gaussian());
     const double uniform = 1.0 - stream.uniform();
-    mix(bits.library, std::log(uniform) + std::cos(6.0 * uniform));
+    mix(bits.libc, std::log(uniform) + std::cos(6.0 * uniform));
   }
   return bits;
 }

@@ -5,5 +5,5 @@
 
 int main() {
   const nextview::NoiseBits bits = nextview::noise_bits();
-  std::cout << bits.noise << ' ' << bits.library << '\n';
+  std::cout << bits.noise << ' ' << bits.libc << '\n';
 }

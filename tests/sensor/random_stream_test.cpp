@@ -117,14 +117,14 @@ TEST(RandomStream, GaussianDoesNotDependOnTheProcessor) {
     const bool read = std::fgets(line, sizeof(line), pipe) != nullptr;
     if (pclose(pipe) != 0 || !read) throw std::runtime_error(command + " failed");
     NoiseBits bits;
-    std::istringstream(line) >> bits.noise >> bits.library;
+    std::istringstream(line) >> bits.noise >> bits.libc;
     return bits;
   };
   const NoiseBits as_it_is = noise_with("");
   const NoiseBits without = noise_with("glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX512F");
   EXPECT_EQ(as_it_is.noise, noise_bits().noise);
   EXPECT_EQ(without.noise, as_it_is.noise);
-  if (without.library == as_it_is.library) {
+  if (without.libc == as_it_is.libc) {
     std::cout << "here the C library's own log and cos do not differ either\n";
   }
 }

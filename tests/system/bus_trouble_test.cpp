@@ -115,8 +115,7 @@ TEST(BusTrouble, ThatComesInMidRunLeavesTheArtefacts) {
   EXPECT_EQ(run.wait(), 7) << run.output();
   EXPECT_NE(run.output().find("bus_failed: LCM cannot publish"), std::string::npos) << run.output();
   EXPECT_GE(column_of_views(folder / "run", "view").size(), 3U);
-  std::ifstream summary(folder / "run" / "summary.json");
-  EXPECT_EQ(nlohmann::json::parse(summary).at("stop_reason"), "bus_failed");
+  EXPECT_EQ(summary_of(folder / "run").at("stop_reason"), "bus_failed");
 }
 
 TEST(ForeignMember, ThatAsksAndSaysHowItIsDoesNotDisturbARun) {

@@ -21,7 +21,11 @@ class LongRun : public testing::Test {
   void start(const std::vector<std::string>& more = {}) {
     std::vector<std::string> arguments = {"--strategy", "paper", "--stop-window", "100000"};
     arguments.insert(arguments.end(), more.begin(), more.end());
-    run_.emplace(run_arguments(folder_ / "run", 100000, arguments));
+    start_program(run_arguments(folder_ / "run", 100000, arguments));
+  }
+
+  void start_program(const std::vector<std::string>& arguments) {
+    run_.emplace(arguments);
     ASSERT_TRUE(run_->wait_for("view   3/")) << run_->output();
     children_ = run_->children();
     ASSERT_EQ(children_.size(), 5u) << "four processes and the recorder";
@@ -42,8 +46,7 @@ class LongRun : public testing::Test {
     EXPECT_GE(views_in(replay.output, std::regex("(\\d+) views replayed")),
               views_in(run_->output(), std::regex("view +(\\d+)/")))
         << "a view that was shown is not in the log";
-    std::ifstream file(folder_ / "run" / "summary.json");
-    EXPECT_EQ(nlohmann::json::parse(file).at("stop_reason"), stop_reason);
+    EXPECT_EQ(summary_of(folder_ / "run").at("stop_reason"), stop_reason);
   }
 
   /// The last number of views that a text speaks of.
@@ -84,6 +87,21 @@ TEST_F(LongRun, EndsCleanlyWhenItsTerminalGoes) {
   expect_readable_log("interrupted");
 }
 
+// A planner that has been ended answers no more for its goals and searches.
+TEST_F(LongRun, MakesGoodWhatTheRecorderMissedOfAnEndedPlanner) {
+  std::filesystem::create_symlink(program_path("forgetful_recorder"), folder_ / "lcm-logger");
+  std::vector<std::string> arguments = {"/usr/bin/env", "PATH=" + folder_.path().string()};
+  for (const std::string& argument :
+       run_arguments(folder_ / "run", 100000, {"--strategy", "paper", "--stop-window", "100000"})) {
+    arguments.push_back(argument);
+  }
+  start_program(arguments);
+  run_->signal(SIGTERM);
+  EXPECT_EQ(run_->wait(), 143) << run_->output();
+  expect_nothing_left();
+  expect_readable_log("interrupted");
+}
+
 TEST_F(LongRun, LeavesNothingBehindWhenItIsKilled) {
   start();
   run_->signal(SIGKILL);
@@ -117,6 +135,22 @@ TEST_F(LongRun, SaysThatTheRecorderDied) {
   EXPECT_NE(run_->output().find("lcm-logger was killed by signal 9"), std::string::npos)
       << run_->output();
   expect_nothing_left();
+}
+
+// Halted after the last view has been asked for, so that the planner ends the run as it should.
+TEST_F(LongRun, DoesNotWaitForEverForARecorderThatIsHalted) {
+  start_program(run_arguments(
+      folder_ / "run", 400, {"--strategy", "paper", "--stop-window", "100000", "--patience", "3"}));
+  const pid_t recorder = run_->child("lcm-logger");
+  ASSERT_NE(recorder, 0);
+  ::kill(recorder, SIGSTOP);
+  EXPECT_EQ(run_->wait(), 5) << run_->output();
+  EXPECT_NE(run_->output().find("view 400/400"), std::string::npos) << run_->output();
+  EXPECT_NE(run_->output().find("the log still lacks NEXTVIEW_"), std::string::npos)
+      << run_->output();
+  expect_nothing_left();
+  EXPECT_EQ(summary_of(folder_ / "run").at("stop_reason"), "no_answer");
+  EXPECT_EQ(summary_of(folder_ / "run").at("views"), 400);
 }
 
 TEST_F(LongRun, SaysWhomItWaitsFor) {
@@ -159,8 +193,7 @@ TEST_F(LongRun, NamesAReasonToStopThatItDoesNotKnow) {
   EXPECT_NE(run_->output().find("the reason \"bored\", which this version"), std::string::npos)
       << run_->output();
   expect_nothing_left();
-  std::ifstream file(folder_ / "run" / "summary.json");
-  EXPECT_EQ(nlohmann::json::parse(file).at("stop_reason"), "bored");
+  EXPECT_EQ(summary_of(folder_ / "run").at("stop_reason"), "bored");
 }
 
 /// Seconds of CPU time a process has used, or nothing when there is none any more.

@@ -21,8 +21,8 @@ using Folders = std::set<std::string>;
 /// is_of_bus) have their own arrows; the bus files of a folder may include what its library may,
 /// the library itself, and lcmtypes. This table is the one place that a new folder is told to.
 struct Arrows {
-  Folders library;
-  Folders bus;
+  Folders every_file;
+  Folders bus_file;
 };
 const std::map<std::string, Arrows> kArrows = {
     {"lcmtypes", {{}, {"sensor"}}},
@@ -78,7 +78,8 @@ bool may_include(const Source& from, const Source& to) {
   if (from.of_bus && to.folder == "lcmtypes") return true;
   if (to.of_bus && !from.of_bus) return false;
   const Arrows& arrows = kArrows.at(from.folder);
-  return arrows.library.contains(to.folder) || (from.of_bus && arrows.bus.contains(to.folder));
+  return arrows.every_file.contains(to.folder) ||
+         (from.of_bus && arrows.bus_file.contains(to.folder));
 }
 
 std::vector<Source> sources() {

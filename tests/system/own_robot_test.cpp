@@ -46,8 +46,7 @@ TEST(OwnRobot, RecoversWhatTheSimulatedOneDoes) {
             column_of_views(folder / "simulated", "map_digest"));
   const Outcome replay = replay_folder(folder / "own", {"--planner"});
   EXPECT_EQ(replay.status, 0) << replay.output;
-  std::ifstream file(folder / "own" / "summary.json");
-  const auto summary = nlohmann::json::parse(file);
+  const auto summary = summary_of(folder / "own");
   EXPECT_EQ(summary.at("views"), kViews);
   EXPECT_TRUE(summary.at("surface_coverage").is_null());
   EXPECT_EQ(summary.at("surface_coverage_unknown"),

@@ -9,6 +9,7 @@
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 #include <sstream>
 #include <stdexcept>
 
@@ -129,6 +130,11 @@ std::vector<std::string> column_of_views(const std::filesystem::path& folder,
   std::vector<std::string> values;
   for (std::size_t i = 1; i < rows.size(); ++i) values.push_back(rows[i].at(column));
   return values;
+}
+
+nlohmann::json summary_of(const std::filesystem::path& folder) {
+  std::ifstream file(folder / "summary.json");
+  return nlohmann::json::parse(file);
 }
 
 void wait_until_gone(pid_t pid) {

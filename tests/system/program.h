@@ -3,6 +3,7 @@
 #include <sys/types.h>
 
 #include <filesystem>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <vector>
 
@@ -17,6 +18,8 @@ class Program {
 
   /// Waits until it has said something that contains the text; false when it ended without.
   bool wait_for(const std::string& text);
+  /// Takes in what it has said, and tells whether it has not ended yet.
+  bool running() { return take_in(); }
   /// Waits for its end and returns its exit status, or 128 and more when a signal ended it.
   int wait();
   void signal(int number) { process_.signal(number); }
@@ -72,6 +75,9 @@ Outcome replay_folder(const std::filesystem::path& folder,
 /// A column of a run's views.csv, without its heading.
 std::vector<std::string> column_of_views(const std::filesystem::path& folder,
                                          const std::string& heading);
+
+/// What a run's summary.json says.
+nlohmann::json summary_of(const std::filesystem::path& folder);
 
 /// Waits until a process is no more.
 void wait_until_gone(pid_t pid);

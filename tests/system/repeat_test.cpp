@@ -3,6 +3,7 @@
 #include <atomic>
 #include <thread>
 
+#include "runner/port_lock.h"
 #include "tests/system/program.h"
 
 namespace nextview {
@@ -76,7 +77,8 @@ TEST(Repeat, TwoRunsAtOnceDoNotDisturbEachOther) {
 TEST(Repeat, NotEvenOnTheSamePort) {
   const TemporaryFolder folder;
   ASSERT_EQ(run_views(folder / "alone", 10).status, 0);
-  const std::vector<std::string> same_port = {"--lcm-url", "udpm://239.255.76.67:7990?ttl=0"};
+  const PortLock port = PortLock::acquire();
+  const std::vector<std::string> same_port = {"--lcm-url", port.lcm_url()};
   Program a(run_arguments(folder / "a", 10, same_port));
   Program b(run_arguments(folder / "b", 10, same_port));
   EXPECT_EQ(a.wait(), 0) << a.output();

@@ -43,6 +43,17 @@ class RecordedRun : public testing::Test {
     return decode_checked<Message>(bytes).message.value().view == view;
   }
 
+  /// A copy in which the messages of a type and view have been edited.
+  template <class Message>
+  std::filesystem::path edited(int view, const std::function<void(Message&)>& edit) {
+    return tampered([&](const lcm::LogEvent& event, const Bytes& bytes) {
+      if (!is_view<Message>(event, bytes, view)) return Instead{bytes};
+      Message message = *decode_checked<Message>(bytes).message;
+      edit(message);
+      return Instead{encode(message)};
+    });
+  }
+
   static void expect_disagreement(const Outcome& replay, const std::string& words) {
     expect_outcome(replay, 1, words);
   }
@@ -78,26 +89,14 @@ TEST_F(RecordedRun, AgreesWhenMessagesCameTwice) {
 }
 
 TEST_F(RecordedRun, ARangeThatWasChangedIsFound) {
-  const auto folder = tampered([](const lcm::LogEvent& event, const Bytes& bytes) {
-    if (is_view<range_image_t>(event, bytes, 4)) {
-      range_image_t image = *decode_checked<range_image_t>(bytes).message;
-      for (float& range_m : image.range_m) range_m *= 0.5F;
-      return Instead{encode(image)};
-    }
-    return Instead{bytes};
+  const auto folder = edited<range_image_t>(4, [](range_image_t& image) {
+    for (float& range_m : image.range_m) range_m *= 0.5F;
   });
   expect_disagreement(replay_folder(folder), "NEXTVIEW_COMMIT of view 4 differs in ");
 }
 
 TEST_F(RecordedRun, AnImageThatWasChangedWhereTheMapDoesNotLookIsFound) {
-  const auto folder = tampered([](const lcm::LogEvent& event, const Bytes& bytes) {
-    if (is_view<range_image_t>(event, bytes, 4)) {
-      range_image_t image = *decode_checked<range_image_t>(bytes).message;
-      image.pan_rad += 1e-6;
-      return Instead{encode(image)};
-    }
-    return Instead{bytes};
-  });
+  const auto folder = edited<range_image_t>(4, [](range_image_t& image) { image.pan_rad += 1e-6; });
   expect_disagreement(replay_folder(folder),
                       "NEXTVIEW_COMMIT of view 4 differs in pan_rad, history_digest");
 }
@@ -114,14 +113,7 @@ TEST_F(RecordedRun, AMessageLeftOutIsFound) {
 }
 
 TEST_F(RecordedRun, AGoalThatWasChangedIsFoundByThePlanner) {
-  const auto folder = tampered([](const lcm::LogEvent& event, const Bytes& bytes) {
-    if (is_view<goal_t>(event, bytes, 5)) {
-      goal_t goal = *decode_checked<goal_t>(bytes).message;
-      goal.fitness += 1e-9;
-      return Instead{encode(goal)};
-    }
-    return Instead{bytes};
-  });
+  const auto folder = edited<goal_t>(5, [](goal_t& goal) { goal.fitness += 1e-9; });
   const Outcome without_planner = replay_folder(folder);
   EXPECT_EQ(without_planner.status, 0) << "the map does not depend on it";
   EXPECT_NE(without_planner.output.find(

@@ -8,11 +8,6 @@
 namespace nextview {
 namespace {
 
-nlohmann::json summary_of(const std::filesystem::path& folder) {
-  std::ifstream file(folder / "summary.json");
-  return nlohmann::json::parse(file);
-}
-
 std::string first_line(const std::filesystem::path& file) {
   std::ifstream in(file);
   std::string line;
