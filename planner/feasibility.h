@@ -49,7 +49,7 @@ struct FeasibilityParameters {
 
   double clearance_m = 0.40;    ///< no Occupied voxel nearer to the sensor or its path (P19)
   double body_radius_m = 0.20;  ///< nor anything unknown; 0: unknown space may be near
-  double departure_m = 0.80;  ///< but unknown voxels this near to where the sensor is do not count
+  double departure_m = 1.00;  ///< but unknown voxels this near to where the sensor is do not count
   Eigen::Vector3d workspace_min_m = Eigen::Vector3d::Constant(-kUnlimited);  ///< world frame
   Eigen::Vector3d workspace_max_m = Eigen::Vector3d::Constant(kUnlimited);
   double lift_min_m = -kUnlimited;  ///< sensor height, world z

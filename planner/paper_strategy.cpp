@@ -24,6 +24,10 @@ constexpr double kInfeasible = -std::numeric_limits<double>::infinity();
 /// costs little beside a prediction.
 constexpr int kInitialDraws = 200;
 
+/// Of the good views a last look finds so many are told: what was tried for a goal has to fit one
+/// message.
+constexpr std::size_t kMostTried = 1200;
+
 /// Where the simplex may try positions.
 class FeasiblePositions {
  public:
@@ -177,7 +181,8 @@ void PaperStrategy::view_folded(const FoldedView& folded) {
 
 std::optional<Ending> PaperStrategy::ending() const {
   const std::optional<StopReason> reason = should_stop(views_, stop_);
-  if (!reason) return std::nullopt;
+  // That nothing new is to be seen is for a last look to say.
+  if (!reason || *reason == StopReason::NothingNew) return std::nullopt;
   return Ending{*reason, std::string(describe(*reason))};
 }
 
@@ -201,7 +206,40 @@ NextView PaperStrategy::next_view(const Situation& situation) {
   return next;
 }
 
+NextView PaperStrategy::last_look(const Situation& situation) {
+  paths_.find_all();
+  ViewEvaluator evaluator(situation.space, *predictor_, {}, situation.present);
+  const std::optional<LastLook::View> found = last_look_.best_view(situation, paths_, evaluator);
+  if (!found) {
+    return Ending{StopReason::NothingNew,
+                  std::string(describe(StopReason::NothingNew)) + " From none of " +
+                      std::to_string(last_look_.voxels_asked()) +
+                      " positions that can be reached a view has a fitness above 0.6."};
+  }
+  const VoxelGrid& grid = situation.space.map().grid();
+  const auto position_m = [&](const VoxelIndex& voxel) {
+    const Eigen::Vector3d& present_m = situation.present.position_m;
+    return voxel == grid.voxel_of(present_m) ? present_m : grid.center_m(voxel);
+  };
+  Decision decision;
+  for (const LastLook::View& view : last_look_.good()) {
+    if (decision.tried.size() == kMostTried) break;
+    const Orientation& orientation = evaluator.orientations()[view.best.orientation];
+    decision.tried.push_back({position_m(view.voxel), orientation.pan_rad, orientation.tilt_rad,
+                              view.best.fitness.value});
+  }
+  const Orientation& orientation = evaluator.orientations()[found->best.orientation];
+  decision.pose = {position_m(found->voxel), orientation.pan_rad, orientation.tilt_rad};
+  decision.waypoints_m = paths_.waypoints_to_m(decision.pose.position_m);
+  decision.fitness = found->best.fitness;
+  decision.evaluations = static_cast<int>(last_look_.voxels_asked());
+  decision.strategy = kName;
+  decision.reason = "the last views have shown nothing new; " + reason_of(decision);
+  return decision;
+}
+
 NextView PaperStrategy::decided(const Situation& situation) {
+  if (should_stop(views_, stop_) == StopReason::NothingNew) return last_look(situation);
   std::optional<Decision> decision = decide_by_simplex(situation, paths_, *predictor_, search_);
   if (decision) return *std::move(decision);
   return Ending{StopReason::NoFeasibleGoal, "view " + std::to_string(situation.view) +

@@ -6,6 +6,7 @@
 
 #include "planner/clear_space.h"
 #include "planner/feasibility.h"
+#include "planner/last_look.h"
 #include "planner/prediction/view_predictor.h"
 #include "planner/refused_places.h"
 #include "planner/shortest_paths.h"
@@ -39,7 +40,9 @@ std::optional<Decision> decide_by_simplex(const Situation& situation, ShortestPa
                                           ViewPredictor& predictor,
                                           const PlannerParameters& parameters);
 
-/// The paper's method, section 5: the simplex, and the rules that end a run (P23).
+/// The paper's method, section 5: the simplex, and the rules that end a run (P23). Before rule 1
+/// ends it, a good view is looked for from everywhere (LastLook), and the run goes on from the
+/// best.
 class PaperStrategy : public Strategy {
  public:
   static constexpr const char* kName = "paper";
@@ -57,6 +60,7 @@ class PaperStrategy : public Strategy {
  private:
   void follow_map(const VoxelMap& map);
   NextView decided(const Situation& situation);
+  NextView last_look(const Situation& situation);
 
   PlannerParameters search_;
   StopParameters stop_;
@@ -67,6 +71,7 @@ class PaperStrategy : public Strategy {
   std::optional<ClearSpace> clear_;           // of the map's window
   RefusedPlaces refused_;
   ShortestPaths paths_;
+  LastLook last_look_;
   std::vector<Eigen::Vector3d> way_m_;  // of the last decision
 };
 

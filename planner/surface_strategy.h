@@ -22,7 +22,7 @@ struct SurfaceParameters {
   double improvement_weight = 0.0;  ///< of quality; 0: it does not count
   double min_overlap = 0.2;         ///< of a view with what is known
   double least_new_area_m2 = 0.05;  ///< the run ends when no view is expected to show more
-  double first_departure_m = 0.8;   ///< of the first move (FeasibilityParameters::departure_m)
+  double first_departure_m = 1.0;   ///< of the first move (FeasibilityParameters::departure_m)
   double departure_m = 0.3;         ///< of all others
   bool return_home = false;         ///< to the first view's pose, when nothing is left
   int spacing_voxels = 3;           ///< between candidate positions

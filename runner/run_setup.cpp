@@ -95,7 +95,9 @@ double floor_under_start_m(const run_config_t& config, const Scene* scene,
   const Eigen::Vector3d start_m(config.base.start_m);
   const auto below =
       scene == nullptr ? std::nullopt : scene->first_hit(start_m, -Eigen::Vector3d::UnitZ());
-  return below ? start_m.z() - double{below->distance_m} : bounds.min().z();
+  if (!below) return bounds.min().z();
+  // Rays are cast in float: to the tenth of a millimetre, and 0 is not -0.
+  return std::round(1e4 * (start_m.z() - double{below->distance_m})) / 1e4 + 0.0;
 }
 
 void fill_base(run_config_t& config, const RunOptions& options, const Eigen::AlignedBox3d& bounds,

@@ -260,7 +260,7 @@ bool plainly_reachable(const VoxelMap& map, const FeasibilityParameters& paramet
           const VoxelIndex at = voxel + VoxelIndex(i, j, k);
           const Label label = map.label(at);
           const bool unknown = label != Label::Empty && label != Label::Occupied;
-          if (unknown && (at - present).squaredNorm() >= 64) return true;  // from 0.80 m on
+          if (unknown && (at - present).squaredNorm() >= 100) return true;  // from 1.00 m on
         }
       }
     }
