@@ -2,7 +2,7 @@
 
 #include <bit>
 
-#include "mapper/map_census.h"
+#include "mapper/voxel_map.h"
 #include "sensor/vector_clones.h"
 
 namespace nextview {
@@ -20,7 +20,6 @@ static_assert(static_cast<int>(Label::Occluded) == 0b001);
 static_assert(static_cast<int>(Label::OcclusionPlane) == 0b010);
 static_assert(static_cast<int>(Label::Empty) == 0b011);
 static_assert(static_cast<int>(Label::Occupied) == 0b100);
-static_assert(static_cast<int>(kFreshlyOccluded) == 0b101);
 
 }  // namespace
 
@@ -38,10 +37,9 @@ void sort_by_label(const BlockRows& rows, BlockLabels& labels) {
       bit2 |= (row >> 2 & kFirstY) << y;
     }
     labels.empty[z] = bit0 & bit1;
-    labels.occupied[z] = bit2 & ~bit0;
+    labels.occupied[z] = bit2;
     labels.hidden[z] = bit0 ^ bit1;
     labels.occlusion_plane[z] = bit1 & ~bit0;
-    labels.fresh[z] = bit2 & bit0;
   }
 }
 

@@ -18,16 +18,10 @@ using BlockRows = std::array<std::uint64_t, 64>;
 struct BlockLabels {
   BlockBits empty;
   BlockBits occupied;
-  BlockBits hidden;           ///< Occluded, OcclusionPlane or fresh
+  BlockBits hidden;           ///< Occluded or OcclusionPlane
   BlockBits occlusion_plane;  ///< as labelled
-  BlockBits fresh;            ///< kFreshlyOccluded (map_census.h)
 };
 void sort_by_label(const BlockRows& rows, BlockLabels& labels);
-
-/// Rows with kFreshlyOccluded made Occluded.
-constexpr std::uint64_t settled(std::uint64_t row) {
-  return row & ~((row & 0x0101010101010101u) << 2);
-}
 
 /// What a block's voxels of a label have to do with Empty ones at their six faces.
 struct EmptyNeighbours {

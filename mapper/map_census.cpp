@@ -33,27 +33,15 @@ std::uint64_t read_row(const Label* from, const MapBlocks::AxisSlots& xs) {
   return row;
 }
 
-void write_row(std::uint64_t row, const MapBlocks::AxisSlots& xs, Label* to) {
-  if (is_whole(xs)) {
-    std::memcpy(to + xs[0], &row, kSide);
-    return;
-  }
-  for (std::size_t x = 0; x < kSide; ++x) {
-    if (xs[x] != MapBlocks::kOutside) to[xs[x]] = static_cast<Label>(row >> (8 * x) & 0xff);
-  }
-}
-
-// Reads the labels of a block, and settles those that are freshly Occluded.
-void take_rows(std::span<Label> labels, const Slots& slots, BlockRows& rows) {
+// Reads the labels of a block.
+void read_rows(std::span<const Label> labels, const Slots& slots, BlockRows& rows) {
   const auto& [xs, ys, zs] = slots;
   for (std::size_t z = 0; z < kSide; ++z) {
     for (std::size_t y = 0; y < kSide; ++y) {
       std::uint64_t& row = rows[kSide * y + z];
       row = 0;
       if (ys[y] == MapBlocks::kOutside || zs[z] == MapBlocks::kOutside) continue;
-      Label* const at = labels.data() + ys[y] + zs[z];
-      row = read_row(at, xs);
-      if (settled(row) != row) write_row(settled(row), xs, at);
+      row = read_row(labels.data() + ys[y] + zs[z], xs);
     }
   }
 }
@@ -61,7 +49,10 @@ void take_rows(std::span<Label> labels, const Slots& slots, BlockRows& rows) {
 }  // namespace
 
 MapCensus::MapCensus(const VoxelMap& map, const MapBlocks& blocks)
-    : counts_(blocks.size()), empty_(std::size_t{blocks.size()} + 1), listed_(blocks.size(), 0) {
+    : counts_(blocks.size()),
+      empty_(std::size_t{blocks.size()} + 1),
+      hidden_(blocks.size()),
+      listed_(blocks.size(), 0) {
   const VoxelIndex size = map.window().size;
   voxels_[byte(Label::Unmarked)] = std::int64_t{size[0]} * size[1] * size[2];
 }
@@ -90,9 +81,9 @@ void MapCensus::list_neighbours(const MapBlocks& blocks, std::uint32_t block, un
   }
 }
 
-void MapCensus::take_labels(VoxelMap& map, const MapBlocks& blocks, std::uint32_t block) {
+void MapCensus::take_labels(const VoxelMap& map, const MapBlocks& blocks, std::uint32_t block) {
   BlockRows rows;
-  take_rows(map.labels(), blocks.slots(block), rows);
+  read_rows(map.labels(), blocks.slots(block), rows);
   LookedAt& at = labels_.emplace_back();
   at.block = block;
   sort_by_label(rows, at.labels);
@@ -115,6 +106,7 @@ std::span<const std::uint32_t> MapCensus::update(VoxelMap& map, const MapBlocks&
   for (const LookedAt& at : labels_) {
     add(counts_[at.block], -1);
     counts_[at.block] = derive(map, blocks, at, changed_slots);
+    hidden_[at.block] = at.labels.hidden;
     add(counts_[at.block], 1);
     listed_[at.block] = 0;
   }
@@ -145,8 +137,8 @@ MapCensus::Counts MapCensus::derive(VoxelMap& map, const MapBlocks& blocks, cons
         const auto bit = static_cast<std::size_t>(std::countr_zero(left));
         const std::size_t slot = xs[bit / kSide] + ys[bit % kSide] + zs[z];
         map.labels()[slot] = planes[z] >> bit & 1 ? Label::OcclusionPlane : Label::Occluded;
-        // A fresh one has been noted already.
-        if (!(labels.fresh[z] >> bit & 1)) {
+        // One that was not hidden before has been noted by whoever marked it.
+        if (hidden_[at.block][z] >> bit & 1) {
           changed_slots.push_back(static_cast<std::uint32_t>(slot));
         }
       }
@@ -176,8 +168,9 @@ void MapCensus::add(const Counts& counts, int sign) {
 }
 
 std::size_t MapCensus::memory_bytes() const {
-  return counts_.capacity() * sizeof(Counts) + empty_.capacity() * sizeof(BlockBits) +
-         listed_.capacity() + (to_look_.capacity() + looked_.capacity()) * sizeof(std::uint32_t) +
+  return counts_.capacity() * sizeof(Counts) +
+         (empty_.capacity() + hidden_.capacity()) * sizeof(BlockBits) + listed_.capacity() +
+         (to_look_.capacity() + looked_.capacity()) * sizeof(std::uint32_t) +
          labels_.capacity() * sizeof(LookedAt);
 }
 

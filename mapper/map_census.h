@@ -11,10 +11,6 @@
 
 namespace nextview {
 
-/// What the marking of a range image (ray_marking.h) leaves where a voxel went from Unmarked to
-/// Occluded, until MapCensus has made it Occluded or OcclusionPlane. No map shows it after a fold.
-constexpr Label kFreshlyOccluded = static_cast<Label>(kLabelCount);
-
 /// The voxels of a map counted block by block, and its occlusion planes (P8, P13).
 ///
 /// A label, and whether an Occluded voxel is an OcclusionPlane, depends on the voxel and its six
@@ -65,7 +61,7 @@ class MapCensus {
     listed_[block] = 1;
     to_look_.push_back(block);
   }
-  void take_labels(VoxelMap& map, const MapBlocks& blocks, std::uint32_t block);
+  void take_labels(const VoxelMap& map, const MapBlocks& blocks, std::uint32_t block);
   void list_neighbours(const MapBlocks& blocks, std::uint32_t block, unsigned sides);
   Counts derive(VoxelMap& map, const MapBlocks& blocks, const LookedAt& at,
                 std::vector<std::uint32_t>& changed_slots) const;
@@ -73,6 +69,7 @@ class MapCensus {
 
   std::vector<Counts> counts_;        ///< by block
   std::vector<BlockBits> empty_;      ///< by block
+  std::vector<BlockBits> hidden_;     ///< by block; a label of these changes here alone
   std::vector<std::uint8_t> listed_;  ///< by block: whether in to_look_
   std::vector<std::uint32_t> to_look_;
   std::vector<std::uint32_t> looked_;

@@ -4,7 +4,6 @@
 
 #include "mapper/integer_line.h"
 #include "mapper/line_bundle.h"
-#include "mapper/map_census.h"
 
 namespace nextview {
 
@@ -81,9 +80,9 @@ std::int64_t mark_rays(VoxelMap& map, const VoxelIndex& sensor, std::span<const 
   marker.finish(Label::Empty, Label::Empty);
   for (const Shadow& shadow : shadows) {
     const IntegerLine line = line_between(ends[shadow.end].voxel, shadow.limit);
-    marker.raise(line, 1, line.steps, Label::Occluded, kFreshlyOccluded);
+    marker.raise(line, 1, line.steps, Label::Occluded, Label::Occluded);
   }
-  marker.finish(Label::Occluded, kFreshlyOccluded);
+  marker.finish(Label::Occluded, Label::Occluded);
   return newly_occupied;
 }
 

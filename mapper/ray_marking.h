@@ -22,8 +22,6 @@ namespace nextview {
 /// the rays matters. Marks are set strongest first, all hits, then all misses, then all shadows:
 /// then no voxel changes twice.
 ///
-/// A voxel that turns from Unmarked to Occluded is left as kFreshlyOccluded (map_census.h).
-///
 /// @param sensor        the voxel of the sensor, inside the map's window
 /// @param shadows       of these ends
 /// @param changed_slots receives, appended, the slots whose label has changed, each once

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "mapper/map_census.h"
+#include "mapper/voxel_map.h"
 #include "tests/mapper/analytic_world.h"
 
 namespace nextview {
@@ -20,7 +20,7 @@ struct RandomBlocks {
     for (BlockRows& block : rows) {
       block = {};
       for (std::size_t n = 0; n < 512; ++n) {
-        block[n % 64] |= std::uint64_t{random.below(6) < kinds ? random.below(6) : 3}
+        block[n % 64] |= std::uint64_t{random.below(6) < kinds ? random.below(kLabelCount) : 3}
                          << (8 * (n / 64));
       }
     }
@@ -77,18 +77,13 @@ TEST(BlockBits, EqualABlockSeenVoxelByVoxel) {
     for_each_voxel([&](int x, int y, int z) {
       const int label = blocks.label(x, y, z);
       const auto is = [&](Label which) { return label == static_cast<int>(which); };
-      const bool fresh = is(kFreshlyOccluded);
-      const bool hidden = is(Label::Occluded) || is(Label::OcclusionPlane) || fresh;
+      const bool hidden = is(Label::Occluded) || is(Label::OcclusionPlane);
       const int touching = blocks.empty_neighbours(x, y, z);
       different += has(middle.empty, x, y, z) != is(Label::Empty);
       different += has(middle.occupied, x, y, z) != is(Label::Occupied);
       different += has(middle.occlusion_plane, x, y, z) != is(Label::OcclusionPlane);
-      different += has(middle.fresh, x, y, z) != fresh;
       different += has(middle.hidden, x, y, z) != hidden;
       different += has(found.any, x, y, z) != (touching > 0);
-      const auto row = blocks.rows[6][static_cast<std::size_t>(8 * y + z)];
-      const int now = static_cast<int>(settled(row) >> (8 * x) & 0xff);
-      different += now != (fresh ? static_cast<int>(Label::Occluded) : label);
       if (is(Label::Occupied)) occupied_faces += touching;
       if (hidden) hidden_faces += touching;
       if (!is(Label::Empty)) return;
