@@ -153,31 +153,16 @@ void SurfaceStrategy::take_refusal(const Situation& situation) {
   for (std::size_t i = 1; i + 1 < way_.size(); ++i) keep_out_of(way_[i]);
 }
 
-std::vector<VoxelIndex> SurfaceStrategy::positions(const Situation& situation, int spacing) const {
+PositionLattice SurfaceStrategy::enough_positions(const Situation& situation) const {
   const VoxelIndex present = clear_->grid().voxel_of(situation.present.position_m);
-  // The seed moves the lattice: runs differ in nothing else.
-  const auto phase = [&](int axis) {
-    return static_cast<int>(situation.seed >> (2 * axis) & 3) % spacing;
-  };
-  std::vector<VoxelIndex> positions = {present};
-  const VoxelIndex lattice(phase(0), phase(1), phase(2));
-  for (const VoxelIndex& voxel : paths_.reached()) {
-    const VoxelIndex from = voxel - lattice;
-    const bool on_lattice =
-        from[0] % spacing == 0 && from[1] % spacing == 0 && from[2] % spacing == 0;
-    if (on_lattice && voxel != present) positions.push_back(voxel);
+  for (int spacing = parameters_.spacing_voxels;; spacing /= 2) {
+    // The seed moves the lattice: runs differ in nothing else.
+    const auto phase = [&](int axis) {
+      return static_cast<int>(situation.seed >> (2 * axis) & 3) % spacing;
+    };
+    PositionLattice lattice(paths_, present, {phase(0), phase(1), phase(2)}, spacing);
+    if (lattice.voxels.size() >= kFewPositions || spacing == 1) return lattice;
   }
-  return positions;
-}
-
-std::vector<VoxelIndex> SurfaceStrategy::enough_positions(const Situation& situation) const {
-  int spacing = parameters_.spacing_voxels;
-  std::vector<VoxelIndex> result = positions(situation, spacing);
-  while (result.size() < kFewPositions && spacing > 1) {
-    spacing /= 2;
-    result = positions(situation, spacing);
-  }
-  return result;
 }
 
 CandidateView SurfaceStrategy::refined(const SurfaceGain::Known& known, CandidateView candidate) {
@@ -211,17 +196,23 @@ NextView SurfaceStrategy::next_view(const Situation& situation) {
   paths_.find(*clear_, situation.space.map(), situation.present.position_m,
               first_move ? parameters_.first_departure_m : parameters_.departure_m);
   const SurfaceGain::Known known = this->known(situation.space);
-  const std::vector<VoxelIndex> positions = enough_positions(situation);
-  std::vector<CandidateView> best = best_views(known, positions);
-  if (best.empty() || area_m2(best.front().value) < parameters_.least_new_area_m2) {
-    // What is far may still be worth the way.
-    const CandidateView most = candidates_.most_valuable(known, paths_, positions);
-    if (area_m2(most.value) < parameters_.least_new_area_m2) {
-      return nothing_left(situation, positions.size());
+  const PositionLattice lattice = enough_positions(situation);
+  std::vector<CandidateView> best = best_views(known, lattice.voxels);
+  const auto is_worth = [&](const CandidateView& candidate) {
+    return area_m2(candidate.value) >= parameters_.least_new_area_m2;
+  };
+  if (best.empty() || !is_worth(best.front())) {
+    // What is far may still be worth the way, and so may what lies between.
+    CandidateView most = candidates_.most_valuable(known, paths_, lattice.voxels);
+    if (!is_worth(most)) {
+      const double least = parameters_.least_new_area_m2 / area_m2(1.0);
+      const auto between = candidates_.off_lattice(known, paths_, lattice, least);
+      if (!between) return nothing_left(situation, paths_.reached().size());
+      most = *between;
     }
     best = {refined(known, most)};
   }
-  return decision(known, best, positions.size());
+  return decision(known, best, lattice.voxels.size());
 }
 
 Decision SurfaceStrategy::decision(const SurfaceGain::Known& known,

@@ -63,8 +63,7 @@ class SurfaceStrategy : public Strategy {
   void forget_refusals_near(const VoxelMap& map, std::span<const std::uint32_t> changed_slots);
   void take_refusal(const Situation& situation);
   SurfaceGain::Known known(const KnownSpace& space) const;
-  std::vector<VoxelIndex> positions(const Situation& situation, int spacing) const;
-  std::vector<VoxelIndex> enough_positions(const Situation& situation) const;
+  PositionLattice enough_positions(const Situation& situation) const;
   CandidateView refined(const SurfaceGain::Known& known, CandidateView candidate);
   std::vector<CandidateView> best_views(const SurfaceGain::Known& known,
                                         std::span<const VoxelIndex> positions);

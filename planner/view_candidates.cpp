@@ -6,6 +6,19 @@
 
 namespace nextview {
 
+PositionLattice::PositionLattice(const ShortestPaths& paths, const VoxelIndex& present,
+                                 const VoxelIndex& origin, int spacing)
+    : origin(origin), spacing(spacing), voxels{present} {
+  for (const VoxelIndex& voxel : paths.reached()) {
+    if (holds(voxel) && voxel != present) voxels.push_back(voxel);
+  }
+}
+
+bool PositionLattice::holds(const VoxelIndex& voxel) const {
+  const VoxelIndex from = voxel - origin;
+  return from[0] % spacing == 0 && from[1] % spacing == 0 && from[2] % spacing == 0;
+}
+
 void ViewCandidates::begin_view(int view, const SurfaceGain::Known& known) {
   view_ = view;
   judged_.clear();
@@ -37,7 +50,7 @@ const ViewCandidates::Judgement& ViewCandidates::judgement_at(const SurfaceGain:
                                                               double path_m) {
   Judgement& judgement = judgements_[key(known, voxel)];
   if (holds(judgement)) return judgement;
-  gain_.look_from(known, voxel);
+  gain_.look_again(known, voxel, judgement.finished);
   judgement.view = gain_.best();
   judgement.value = judgement.view.value(gain_.parameters().improvement_weight);
   judgement.made_in = view_;
@@ -103,6 +116,38 @@ CandidateView ViewCandidates::most_valuable(const SurfaceGain::Known& known,
     if (judged.value > most.value) most = judged;
   }
   return most;
+}
+
+std::optional<CandidateView> ViewCandidates::off_lattice(const SurfaceGain::Known& known,
+                                                         const ShortestPaths& paths,
+                                                         const PositionLattice& lattice,
+                                                         double least_value) {
+  for (const VoxelIndex& voxel : paths.reached()) {
+    if (lattice.holds(voxel)) continue;
+    if (most_off_lattice(known, paths, lattice, voxel) < least_value) continue;
+    const CandidateView judged = judge(known, paths, voxel);
+    if (judged.value >= least_value) return judged;
+  }
+  return std::nullopt;
+}
+
+double ViewCandidates::most_off_lattice(const SurfaceGain::Known& known, const ShortestPaths& paths,
+                                        const PositionLattice& lattice, const VoxelIndex& voxel) {
+  VoxelIndex below = voxel;  // on the lattice
+  for (int axis = 0; axis < 3; ++axis) {
+    const int from = (voxel[axis] - lattice.origin[axis]) % lattice.spacing;
+    below[axis] -= from < 0 ? from + lattice.spacing : from;
+  }
+  double most = -1.0;
+  for (int corner = 0; corner < 8; ++corner) {
+    VoxelIndex at = below;
+    for (int axis = 0; axis < 3; ++axis) {
+      if ((corner >> axis & 1) != 0 && below[axis] != voxel[axis]) at[axis] += lattice.spacing;
+    }
+    if (paths.length_m(at) == ShortestPaths::kUnreachable) continue;
+    most = std::max(most, judge(known, paths, at).value);
+  }
+  return most < 0.0 ? std::numeric_limits<double>::infinity() : kOffLattice * most;
 }
 
 }  // namespace nextview

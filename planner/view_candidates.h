@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -20,6 +22,17 @@ struct CandidateView {
   double score = 0.0;  ///< the value, less the more the longer the way
 };
 
+/// Every so many voxels of what a path leads to, and the present position.
+struct PositionLattice {
+  VoxelIndex origin = VoxelIndex::Zero();
+  int spacing = 1;
+  std::vector<VoxelIndex> voxels;  ///< the present one first, then nearest first
+
+  PositionLattice(const ShortestPaths& paths, const VoxelIndex& present, const VoxelIndex& origin,
+                  int spacing);
+  bool holds(const VoxelIndex& voxel) const;
+};
+
 /// Finds the positions from which most is to be seen, judging only those it has to.
 ///
 /// What was found at a position is kept, with the blocks of the map it depends on, and holds until
@@ -30,6 +43,7 @@ struct CandidateView {
 class ViewCandidates {
  public:
   static constexpr int kMaxAge_views = 10;
+  static constexpr double kOffLattice = 4.0;
 
   /// @param path_cost_per_m lambda: the score is value exp(-lambda path)
   ViewCandidates(SurfaceGain& gain, double path_cost_per_m)
@@ -46,6 +60,14 @@ class ViewCandidates {
   /// The view of the largest value whatever the way, all positions judged that have to be.
   CandidateView most_valuable(const SurfaceGain::Known& known, const ShortestPaths& paths,
                               std::span<const VoxelIndex> voxels);
+  /// A position off the lattice whose view is of at least so much value, the nearest, when no
+  /// position on the lattice is; nothing when there is none either. All positions a path leads to
+  /// are looked at, but judged only where it can be: off the lattice a view is taken to be of at
+  /// most kOffLattice times the value of the best from the corners of the lattice's cell around it,
+  /// as far as paths lead there.
+  std::optional<CandidateView> off_lattice(const SurfaceGain::Known& known,
+                                           const ShortestPaths& paths,
+                                           const PositionLattice& lattice, double least_value);
   /// Judges one position.
   CandidateView judge(const SurfaceGain::Known& known, const ShortestPaths& paths,
                       const VoxelIndex& voxel);
@@ -60,7 +82,10 @@ class ViewCandidates {
     int made_in = 0;   // view; 0: never
     int holds_in = 0;  // last view in which it was found to hold still
     std::vector<std::uint32_t> blocks;
+    Panorama::Packets finished{};  // of the panorama
   };
+  double most_off_lattice(const SurfaceGain::Known& known, const ShortestPaths& paths,
+                          const PositionLattice& lattice, const VoxelIndex& voxel);
   bool holds(Judgement& judgement) const;
   const Judgement& judgement_at(const SurfaceGain::Known& known, const VoxelIndex& voxel,
                                 double path_m);

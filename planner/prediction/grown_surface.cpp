@@ -91,6 +91,10 @@ void GrownSurface::follow_unknown(const VoxelMap& map,
   };
   std::ranges::for_each(changed_slots, follow);
   std::ranges::for_each(changed_, follow);
+  bridges_.clear();
+  for (const Grown& grown : grown_) {
+    if (map.labels()[grown.slot] == Label::Empty) bridges_.push_back(map.index_of_slot(grown.slot));
+  }
   unknown_too_.update(with_unknown_, different);
 }
 

@@ -44,6 +44,8 @@ class GrownSurface {
   /// Slots whose likelihood the last update changed.
   std::span<const std::uint32_t> changed() const { return changed_; }
   std::size_t size() const { return grown_.size(); }
+  /// Those grown voxels that are Empty: there a ray meets something that the map says is not there.
+  const std::vector<VoxelIndex>& bridges() const { return bridges_; }
 
  private:
   struct Plane {
@@ -75,6 +77,7 @@ class GrownSurface {
   FreeSpaceField unknown_too_;
   std::vector<std::int32_t> likelihood_;  // by offset
   std::vector<Grown> grown_;
+  std::vector<VoxelIndex> bridges_;
   std::vector<std::uint32_t> changed_;
   std::vector<Plane> planes_;                  // of the growth under way
   std::vector<std::vector<Growing>> buckets_;  // by squared distance

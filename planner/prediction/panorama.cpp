@@ -89,6 +89,39 @@ Panorama::Panorama(double reach) {
 
 namespace {
 
+constexpr std::size_t kPacketsOfRow = kSide / Panorama::kPacketCells;
+constexpr std::size_t kPacketsOfFace = kSide * kPacketsOfRow;
+constexpr std::size_t kPackets = 6 * kPacketsOfFace;
+constexpr std::uint64_t kPacket = (std::uint64_t{1} << Panorama::kPacketCells) - 1;
+
+// A packet's first cell in its row.
+constexpr std::size_t first_of(std::size_t packet) {
+  return packet % kPacketsOfRow * Panorama::kPacketCells;
+}
+
+// Of a face's rows or columns the first and the last whose slopes are between these, and maybe one
+// more on either side; first > last when there are none.
+std::array<int, 2> cells_between(double min_slope, double max_slope) {
+  // By slope from -1 to 1 the cell in which it lies.
+  constexpr int kSlopes = 1024;
+  static const std::array<std::int8_t, kSlopes + 1> cells = [] {
+    std::array<std::int8_t, kSlopes + 1> result{};
+    for (int i = 0; i <= kSlopes; ++i) {
+      const double angle = std::atan(2.0 * i / kSlopes - 1.0) / (std::numbers::pi / 4.0);
+      result[static_cast<std::size_t>(i)] = static_cast<std::int8_t>((angle + 1.0) * kSide / 2.0);
+    }
+    return result;
+  }();
+  constexpr double kSlack = 0.001;  // slopes of rays are rounded
+  if (max_slope < -1.0 - kSlack || min_slope > 1.0 + kSlack) return {1, 0};
+  const auto cell = [&](double slope) {
+    const double at = (std::clamp(slope, -1.0, 1.0) + 1.0) * (kSlopes / 2);
+    return int{cells[static_cast<std::size_t>(at)]};
+  };
+  return {std::max(0, cell(min_slope - kSlack) - 1),
+          std::min(kSide - 1, cell(max_slope + kSlack) + 1)};
+}
+
 // Of a face's rows of cells as the ray kernel wants them: bit i % 8 of byte i / 8.
 static_assert(std::endian::native == std::endian::little);
 std::uint8_t* bits_of_face(Panorama::Cells& cells, std::size_t face) {
@@ -114,49 +147,95 @@ void cast_all(const RayBundle& bundle, const FreeSpaceField& field, const VoxelI
 
 }  // namespace
 
-void Panorama::cast(const FreeSpaceField& field, const VoxelIndex& sensor, Met& met) const {
+void Panorama::cast(const FreeSpaceField& field, const VoxelIndex& sensor, const Packets& packets,
+                    Met& met) const {
   met.occupied = met.plane = met.unseen = {};
-  for (std::size_t face = 0; face < faces_.size(); ++face) {
-    cast_all(faces_[face], field, sensor, outcomes_of_face(met, face));
-  }
-}
-
-void Panorama::cast_some(const FreeSpaceField& field, const VoxelIndex& sensor, const Cells& cells,
-                         Met& met) const {
-  met.occupied = met.plane = met.unseen = {};
-  constexpr std::size_t kPacketsOfRow = kSide / RayBundle::kPacketRays;
-  constexpr std::uint64_t kPacket = (std::uint64_t{1} << RayBundle::kPacketRays) - 1;
+  constexpr std::size_t kWordsOfFace = kPacketsOfFace / 64;
   RayBundle some;
-  std::vector<std::size_t> chosen;  // packets of the face
+  std::vector<std::size_t> chosen;
   Met of_chosen;
   for (std::size_t face = 0; face < faces_.size(); ++face) {
     chosen.clear();
     some.packets.clear();
-    for (std::size_t packet = 0; packet < faces_[face].packets.size(); ++packet) {
-      const std::uint64_t row = cells[face * kSide + packet / kPacketsOfRow];
-      const std::size_t first = packet % kPacketsOfRow * RayBundle::kPacketRays;
-      if ((row >> first & kPacket) == 0) continue;
-      chosen.push_back(packet);
-      some.packets.push_back(faces_[face].packets[packet]);
+    for (std::size_t word = face * kWordsOfFace; word < (face + 1) * kWordsOfFace; ++word) {
+      for (std::uint64_t bits = packets[word]; bits != 0; bits &= bits - 1) {
+        chosen.push_back(word * 64 + static_cast<std::size_t>(std::countr_zero(bits)));
+        some.packets.push_back(faces_[face].packets[chosen.back() % kPacketsOfFace]);
+      }
     }
     if (chosen.empty()) continue;
+    if (chosen.size() == kPacketsOfFace) {
+      cast_all(faces_[face], field, sensor, outcomes_of_face(met, face));
+      continue;
+    }
     some.driving_axis = faces_[face].driving_axis;
     some.direction = faces_[face].direction;
     some.group.assign(chosen.size(), 0);
     of_chosen.occupied = of_chosen.plane = of_chosen.unseen = {};
     cast_all(some, field, sensor, outcomes_of_face(of_chosen, 0));
     for (std::size_t i = 0; i < chosen.size(); ++i) {
-      std::copy_n(&of_chosen.at[i * RayBundle::kPacketRays], RayBundle::kPacketRays,
-                  &met.at[face * kCellsOfFace + chosen[i] * RayBundle::kPacketRays]);
+      std::copy_n(&of_chosen.at[i * kPacketCells], kPacketCells, &met.at[chosen[i] * kPacketCells]);
       const auto put = [&](const Cells& from, Cells& to) {
-        const std::size_t at = i % kPacketsOfRow * RayBundle::kPacketRays;
-        const std::uint64_t bits = from[i / kPacketsOfRow] >> at & kPacket;
-        to[face * kSide + chosen[i] / kPacketsOfRow] |=
-            bits << chosen[i] % kPacketsOfRow * RayBundle::kPacketRays;
+        const std::uint64_t cells = from[i / kPacketsOfRow] >> first_of(i) & kPacket;
+        to[chosen[i] / kPacketsOfRow] |= cells << first_of(chosen[i]);
       };
       put(of_chosen.occupied, met.occupied);
       put(of_chosen.plane, met.plane);
       put(of_chosen.unseen, met.unseen);
+    }
+  }
+}
+
+Panorama::Packets Panorama::all_packets() {
+  Packets packets;
+  packets.fill(~std::uint64_t{0});
+  return packets;
+}
+
+Panorama::Packets Panorama::with_any(const Cells& cells) {
+  Packets packets{};
+  for (std::size_t i = 0; i < kPackets; ++i) {
+    const bool any = (cells[i / kPacketsOfRow] >> first_of(i) & kPacket) != 0;
+    packets[i / 64] |= std::uint64_t{any} << i % 64;
+  }
+  return packets;
+}
+
+Panorama::Packets Panorama::with_all(const Cells& cells) {
+  Packets packets{};
+  for (std::size_t i = 0; i < kPackets; ++i) {
+    const bool all = (cells[i / kPacketsOfRow] >> first_of(i) & kPacket) == kPacket;
+    packets[i / 64] |= std::uint64_t{all} << i % 64;
+  }
+  return packets;
+}
+
+void Panorama::add_all(const Packets& packets, Cells& cells) {
+  for (std::size_t i = 0; i < kPackets; ++i) {
+    if ((packets[i / 64] >> i % 64 & 1) != 0) cells[i / kPacketsOfRow] |= kPacket << first_of(i);
+  }
+}
+
+// At step k a line's other coordinates are those of the ray, rounded. So it passes a voxel when its
+// slopes, times k, are within half a voxel of it.
+void Panorama::add_passing(const VoxelIndex& step, Packets& packets) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const int k = std::abs(step[axis]);
+    if (k == 0) continue;
+    const auto cells_across = [&](int other) {
+      return cells_between((step[other] - 0.5) / k, (step[other] + 0.5) / k);
+    };
+    const auto [first_column, last_column] = cells_across((axis + 1) % 3);
+    const auto [first_row, last_row] = cells_across((axis + 2) % 3);
+    const int face = 2 * axis + (step[axis] < 0 ? 1 : 0);
+    for (int row = first_row; row <= last_row; ++row) {
+      constexpr int kWide = static_cast<int>(kPacketCells);
+      for (int part = first_column / kWide; part <= last_column / kWide; ++part) {
+        if (first_column > last_column) break;
+        const auto packet = static_cast<std::size_t>(face * kSide + row) * kPacketsOfRow +
+                            static_cast<std::size_t>(part);
+        packets[packet / 64] |= std::uint64_t{1} << packet % 64;
+      }
     }
   }
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdint>
@@ -40,13 +41,23 @@ class Panorama {
     Cells plane{};     ///< kOcclusionPlane,
     Cells unseen{};    ///< and kUnseen
   };
+  /// Cells are cast by so many at a time, neighbours in a row. A set of such packets: packet i in
+  /// bit i % 64 of word i / 64.
+  static constexpr std::size_t kPacketCells = RayBundle::kPacketRays;
+  using Packets = std::array<std::uint64_t, kCells / kPacketCells / 64>;
+  static Packets all_packets();
+  static Packets with_any(const Cells& cells);  ///< packets in which there are any of the cells
+  static Packets with_all(const Cells& cells);  ///< of which all cells are in the set
+  static void add_all(const Packets& packets, Cells& cells);
 
-  /// Casts all rays from a voxel. Of cells that meet only what may be jumped over the offset is -1.
-  void cast(const FreeSpaceField& field, const VoxelIndex& sensor, Met& met) const;
-  /// Casts those of some cells and maybe of some beside them; of the others `met` stays as it is,
-  /// and they are in none of its sets.
-  void cast_some(const FreeSpaceField& field, const VoxelIndex& sensor, const Cells& cells,
-                 Met& met) const;
+  /// Casts the rays of some packets from a voxel. Of cells that meet only what may be jumped over
+  /// the offset is -1; of cells that are not cast it stays as it is, and they are in no set.
+  void cast(const FreeSpaceField& field, const VoxelIndex& sensor, const Packets& packets,
+            Met& met) const;
+
+  /// Adds all packets of which a ray may pass the voxel so many voxels from where it starts, and
+  /// maybe some beside them.
+  static void add_passing(const VoxelIndex& step, Packets& packets);
 
  private:
   std::array<RayBundle, 6> faces_;
@@ -81,6 +92,9 @@ class PanoramaViews {
   /// Sums of values from each row's first cell up to each of its cells.
   using RowSums = std::array<std::int32_t, Panorama::kRows*(Panorama::kSide + 1)>;
   /// Fills in the sums of one row.
+  static void sum_no_cells(std::size_t row, RowSums& sums) {
+    std::fill_n(&sums[row * (Panorama::kSide + 1)], Panorama::kSide + 1, 0);
+  }
   static void sum_row(const std::array<std::int32_t, Panorama::kSide>& values, std::size_t row,
                       RowSums& sums) {
     std::int32_t total = 0;

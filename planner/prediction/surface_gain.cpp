@@ -46,10 +46,37 @@ SurfaceGain::SurfaceGain(const PredictionRaster& raster, double voxel_size_m,
 }
 
 void SurfaceGain::look_from(const Known& known, const VoxelIndex& sensor) {
+  look(known, sensor, Panorama::all_packets());
+  judge(known);
+}
+
+void SurfaceGain::look_again(const Known& known, const VoxelIndex& sensor,
+                             Panorama::Packets& finished) {
+  if (parameters_.improvement_weight > 0.0) {
+    look_from(known, sensor);
+    return;
+  }
+  Panorama::Packets to_cast{};
+  if (known.grown != nullptr) {
+    for (const VoxelIndex& bridge : known.grown->bridges()) {
+      Panorama::add_passing(bridge - sensor, to_cast);
+    }
+  }
+  for (std::size_t i = 0; i < to_cast.size(); ++i) to_cast[i] |= ~finished[i];
+  look(known, sensor, to_cast);
+  Panorama::Cells known_cells = met_.occupied;
+  for (std::size_t row = 0; row < known_cells.size(); ++row) known_cells[row] &= ~met_.plane[row];
+  for (std::size_t i = 0; i < finished.size(); ++i) finished[i] &= ~to_cast[i];
+  Panorama::add_all(finished, known_cells);
+  Panorama::add_all(finished, met_.occupied);
+  finished = Panorama::with_all(known_cells);
+  judge(known);
+}
+
+void SurfaceGain::judge(const Known& known) {
   noted_.resize(known.field.size(), 0);
   for (const std::uint32_t block : blocks_) noted_[block] = 0;
   blocks_.clear();
-  look(known, sensor);
   if (parameters_.improvement_weight > 0.0) add_improvement(known);
   weigh_unknown(known);
   weigh_grown(known);
@@ -59,19 +86,20 @@ void SurfaceGain::look_from(const Known& known, const VoxelIndex& sensor) {
 }
 
 // What a cell meets first and the grown voxel it meets when nothing else unknown stops it are
-// mostly the same voxel, or known. So all cells are cast once, until anything that can be new, and
-// then only those again that have met but one of the two.
-void SurfaceGain::look(const Known& known, const VoxelIndex& sensor) {
+// mostly the same voxel, or known. So cells are cast once, until anything that can be new, and then
+// only those again that have met but one of the two.
+void SurfaceGain::look(const Known& known, const VoxelIndex& sensor,
+                       const Panorama::Packets& to_cast) {
   if (known.grown == nullptr) {
-    panorama_.cast(known.field, sensor, met_);
+    panorama_.cast(known.field, sensor, to_cast, met_);
     grown_cells_ = {};
     for (std::size_t row = 0; row < unknown_cells_.size(); ++row) {
       unknown_cells_[row] = met_.unseen[row] | met_.plane[row];
     }
     return;
   }
-  panorama_.cast(known.grown->unknown_too(), sensor, met_);
-  panorama_.cast_some(known.grown->field(), sensor, met_.unseen, behind_);
+  panorama_.cast(known.grown->unknown_too(), sensor, to_cast, met_);
+  panorama_.cast(known.grown->field(), sensor, Panorama::with_any(met_.unseen), behind_);
   for (std::size_t row = 0; row < grown_cells_.size(); ++row) {
     const std::uint64_t behind = met_.unseen[row] & behind_.plane[row];
     for_each(behind, row, [&](std::size_t cell) { grown_at_[cell] = behind_.at[cell]; });
@@ -91,7 +119,7 @@ void SurfaceGain::look_behind_bridges(const Known& known, const VoxelIndex& sens
     any = true;
   });
   if (any) {
-    panorama_.cast_some(known.field, sensor, bridges, behind_);
+    panorama_.cast(known.field, sensor, Panorama::with_any(bridges), behind_);
     for_each(bridges, [&](std::size_t cell) { met_.at[cell] = behind_.at[cell]; });
   }
   for (std::size_t row = 0; row < unknown_cells_.size(); ++row) {
@@ -155,6 +183,10 @@ void SurfaceGain::add_improvement(const Known& known) {
 
 void SurfaceGain::sum_cells() {
   for (std::size_t row = 0; row < unknown_cells_.size(); ++row) {
+    if ((unknown_cells_[row] | grown_cells_[row]) == 0) {
+      PanoramaViews::sum_no_cells(row, gain_sums_);
+      continue;
+    }
     RowValues values{};
     const auto add = [&](std::uint64_t cells, const std::vector<std::int32_t>& at,
                          const Tally& tally) {

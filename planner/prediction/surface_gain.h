@@ -67,6 +67,13 @@ class SurfaceGain {
 
   /// Looks around from a voxel of the window; what follows is about views from there.
   void look_from(const Known& known, const VoxelIndex& sensor);
+  /// The same, where one has looked from before. Packets of cells that all meet what is Occupied,
+  /// and nothing grown before it, are finished, for what is Occupied or Empty stays known; they
+  /// need not be cast again but for planes that bridge Empty voxels. Of what counts() says they are
+  /// left out.
+  /// @param finished as an earlier look from there left it, and none before the first; with
+  ///        improvement_weight it is not used
+  void look_again(const Known& known, const VoxelIndex& sensor, Panorama::Packets& finished);
   /// The best view, of equal ones the first; value 0 when none overlaps enough.
   ExpectedView best() const;
   ExpectedView view(std::size_t orientation) const;
@@ -87,7 +94,8 @@ class SurfaceGain {
 
   ExpectedView new_in(std::size_t orientation) const;
   double overlap(std::size_t orientation) const;
-  void look(const Known& known, const VoxelIndex& sensor);
+  void judge(const Known& known);
+  void look(const Known& known, const VoxelIndex& sensor, const Panorama::Packets& to_cast);
   void look_behind_bridges(const Known& known, const VoxelIndex& sensor);
   static void count(const Panorama::Cells& cells, const std::vector<std::int32_t>& met_at,
                     std::size_t offsets, Tally& tally);

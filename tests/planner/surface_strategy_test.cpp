@@ -45,6 +45,7 @@ struct Exploration {
   double path_m = 0.0;
   int attempts_refused = 0;
   std::set<std::tuple<int, double, double, double>> refused;  // view and position
+  double most_left_m2 = 0.0;     // that one more view would show, by the scene
   double walls_recovered = 0.0;  // share of the room's walls, floor and ceiling
 };
 
@@ -71,11 +72,44 @@ double recovered(const VoxelMap& map, const Vector3d& size_m) {
   return static_cast<double>(occupied) / points;
 }
 
+// By the scene itself: the new surface that the best view would really show from anywhere that a
+// path leads to from the pose, positions 0.3 m apart and 80 orientations at each.
+double most_left_m2(const VoxelMap& map, const Scene& scene, const SensorPose& pose,
+                    const SurfaceParameters& parameters) {
+  const ClearSpace space(map, parameters.feasibility);
+  ShortestPaths paths;
+  paths.find(space, map, pose.position_m, parameters.departure_m);
+  const RayTable rays = make_ray_table(TiltedLineScan::paper());
+  RandomStream no_noise(1, 1, 1, RandomPurpose::RangeNoise);
+  std::size_t most = 0;
+  for (const VoxelIndex& voxel : paths.reached()) {
+    if (voxel[0] % 3 != 0 || voxel[1] % 3 != 0 || voxel[2] % 3 != 0) continue;
+    for (const Orientation& orientation : icosahedron_orientations(1)) {
+      const RangeImage image = scan(
+          scene, rays, RangeLimits(),
+          {map.grid().center_m(voxel), orientation.pan_rad, orientation.tilt_rad}, 0.0, no_noise);
+      std::set<std::size_t> shown;  // slots
+      for (int v = 0; v < rays.rows(); ++v) {
+        for (int u = 0; u < rays.columns(); ++u) {
+          const float range_m = image.range_m[static_cast<std::size_t>(v * rays.columns() + u)];
+          if (!std::isfinite(range_m)) continue;
+          const Vector3d point_m = image.position_m + image.world_from_sensor * rays.ray(u, v) *
+                                                          static_cast<double>(range_m);
+          const VoxelIndex at = map.grid().voxel_of(point_m);
+          if (map.label(at) != Label::Occupied) shown.insert(map.slot(at));
+        }
+      }
+      most = std::max(most, shown.size());
+    }
+  }
+  return static_cast<double>(most) * kVoxel_m * kVoxel_m;
+}
+
 // Goes on until the strategy ends or there are 80 views; no goal with x beyond refuse_beyond_m is
 // ever reached.
 Exploration run_in(const TriangleMesh& mesh, SurfaceParameters parameters,
                    double refuse_beyond_m = std::numeric_limits<double>::infinity(),
-                   int max_views = 80) {
+                   int max_views = 80, bool check_what_is_left = false) {
   const Scene scene(mesh);
   const Eigen::AlignedBox3d bounds = mesh.bounds_m();
   BaseLimits limits;
@@ -125,6 +159,9 @@ Exploration run_in(const TriangleMesh& mesh, SurfaceParameters parameters,
     }
   }
   run.left_unseen = surface.left_unseen();
+  if (check_what_is_left) {
+    run.most_left_m2 = most_left_m2(planner.map(), scene, pose, parameters);
+  }
   run.walls_recovered = recovered(planner.map(), bounds.max());
   return run;
 }
@@ -151,6 +188,13 @@ TEST(SurfaceStrategy, GoesThroughTheDoorAndEndsWhenAllIsSeen) {
     EXPECT_GE(decision.evaluations, static_cast<int>(decision.tried.size()));
     EXPECT_FALSE(decision.tried.empty());
   }
+}
+
+TEST(SurfaceStrategy, LeavesNoViewThatWouldShowMuch) {
+  const Exploration run =
+      run_in(two_rooms(), {}, std::numeric_limits<double>::infinity(), 80, true);
+  EXPECT_EQ(run.ending->reason, StopReason::NothingLeft) << run.ending->detail;
+  EXPECT_LT(run.most_left_m2, 0.5);
 }
 
 TEST(SurfaceStrategy, DecidesTheSameAgain) {

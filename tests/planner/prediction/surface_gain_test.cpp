@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <bit>
 #include <map>
 #include <optional>
 #include <random>
@@ -147,6 +148,92 @@ TEST(SurfaceGain, IsThatOfTheDefinition) {
     EXPECT_EQ(gain.best().new_voxels, best);
   }
   EXPECT_GT(compared, 900);
+}
+
+// Looks again and again from some positions while a room becomes known, and each time as if for the
+// first time: nothing may be different.
+TEST(SurfaceGain, LookingAgainShowsWhatLookingAnewDoes) {
+  std::mt19937 random(11);
+  const auto below = [&](int size) {
+    return static_cast<int>(random() % static_cast<unsigned>(size));
+  };
+  const std::vector<Orientation> orientations = icosahedron_orientations(1);
+  SurfaceGain again(raster(), kVoxel_m, orientations, {});
+  SurfaceGain anew(raster(), kVoxel_m, orientations, {});
+  VoxelMap map({kVoxel_m, Vector3d::Zero()}, {VoxelIndex::Zero(), VoxelIndex(30, 26, 20)});
+  fill(map, {12, 10, 8}, {18, 16, 12}, Label::Empty);
+  const std::vector<VoxelIndex> sensors = {{15, 13, 10}, {13, 11, 9}, {17, 15, 11}};
+  std::vector<Panorama::Packets> finished(sensors.size(), Panorama::Packets{});
+  FreeSpaceField field(map);
+  GrownSurface grown(map);
+  const std::vector<std::uint8_t> in_vain(field.size(), 0);
+  int finished_packets = 0;
+  std::size_t bridges = 0;
+  for (int round = 0; round < 60; ++round) {
+    std::set<std::uint32_t> changed;
+    const auto learn = [&](const VoxelIndex& voxel) {
+      const bool is_wall = (voxel.array() == 2).any() || voxel[0] == 27 || voxel[1] == 23 ||
+                           voxel[2] == 17 || (voxel - VoxelIndex(8, 20, 6)).squaredNorm() < 6;
+      const Label before = map.label(voxel);
+      if (before == Label::Occupied) return;
+      if (is_wall) {
+        set_surface(map, voxel, Vector3d::Unit(below(3)), 0.5);
+      } else {
+        map.set_label(voxel, Label::Empty);
+      }
+      if (map.label(voxel) != before) changed.insert(static_cast<std::uint32_t>(map.slot(voxel)));
+    };
+    for (int box = 0; box < 3; ++box) {
+      const VoxelIndex min(below(22), below(18), below(12));
+      for (int i = 0; i < 512; ++i) learn(min + VoxelIndex(i % 8, i / 8 % 8, i / 64));
+    }
+    const std::vector<std::uint32_t> slots(changed.begin(), changed.end());
+    field.update(map, slots);
+    grown.update(map, slots);
+    bridges += grown.bridges().size();
+    const SurfaceGain::Known known{field, in_vain, &grown};
+    for (std::size_t i = 0; i < sensors.size(); ++i) {
+      again.look_again(known, sensors[i], finished[i]);
+      anew.look_from(known, sensors[i]);
+      for (const std::uint64_t word : finished[i]) finished_packets += std::popcount(word);
+      for (std::size_t view = 0; view < orientations.size(); ++view) {
+        ASSERT_EQ(again.view(view).new_voxels, anew.view(view).new_voxels) << round;
+        ASSERT_EQ(again.view(view).overlap, anew.view(view).overlap) << round;
+        ASSERT_EQ(again.aimed_at(view), anew.aimed_at(view)) << round;
+      }
+    }
+  }
+  EXPECT_GT(finished_packets, 1000);
+  EXPECT_GT(bridges, 100u);
+}
+
+TEST(Panorama, KnowsWhichRaysMayPassAVoxel) {
+  std::mt19937 random(7);
+  const auto coordinate = [&] { return static_cast<int>(random() % 31) - 15; };
+  std::vector<IntegerLine> lines;
+  for (int cell = 0; cell < Panorama::kCells; ++cell) {
+    lines.push_back(line_along(VoxelIndex::Zero(), Panorama::direction(cell), 40.0));
+  }
+  int passing = 0;
+  int marked = 0;
+  for (int round = 0; round < 200; ++round) {
+    const VoxelIndex step(coordinate(), coordinate(), coordinate());
+    if (step.isZero()) continue;
+    Panorama::Packets packets{};
+    Panorama::add_passing(step, packets);
+    for (const std::uint64_t word : packets) marked += std::popcount(word);
+    for (std::size_t cell = 0; cell < lines.size(); ++cell) {
+      const int k = step.cwiseAbs().maxCoeff();
+      bool passes = false;
+      for (int at = k - 1; at <= k + 1; ++at) passes |= at > 0 && lines[cell].at(at) == step;
+      if (!passes) continue;
+      ++passing;
+      const std::size_t packet = cell / Panorama::kPacketCells;
+      ASSERT_EQ(packets[packet / 64] >> packet % 64 & 1, 1u) << step.transpose() << ", " << cell;
+    }
+  }
+  EXPECT_GT(passing, 1000);
+  EXPECT_LT(marked, 200 * 60);
 }
 
 TEST(SurfaceGain, AVoxelThatFillsTheViewIsOneVoxel) {
