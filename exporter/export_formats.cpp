@@ -4,9 +4,11 @@
 #include <stdexcept>
 
 #include "exporter/mesh_writer.h"
+#include "exporter/octree_file.h"
 #include "exporter/oriented_points.h"
 #include "exporter/point_clouds.h"
 #include "exporter/recovered_mesh.h"
+#include "exporter/run_mcap.h"
 #include "exporter/trajectory.h"
 #include "report/run_report.h"
 
@@ -94,6 +96,15 @@ std::vector<ExportFormat> make_formats() {
                          write_mesh(mesh_of(run, options), format, file);
                        }});
   }
+  formats.push_back(
+      {"octomap.bt", "the map as OctoMap's binary tree",
+       [](RecoveredRun& run, const ExportOptions&, const std::filesystem::path& file) {
+         write_octree(run.builder.map(), file);
+       }});
+  formats.push_back(stream_format("run.mcap", "the run for Foxglove and Lichtblick",
+                                  [](RecoveredRun& run, const ExportOptions&, std::ostream& out) {
+                                    write_run_mcap(out, run);
+                                  }));
   formats.push_back(stream_format("poses.csv", "sensor poses, a row a view",
                                   [](RecoveredRun& run, const ExportOptions&, std::ostream& out) {
                                     write_poses_csv(out, poses_of(run));
