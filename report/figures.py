@@ -27,11 +27,11 @@ Draws the paper's figures 6, 7, 8 and 9 from runs, as PNG and SVG:
                   area per view, quality off and on side by side; of several runs the mean and, shaded,
                   the least and the most
   figure-9-SCENE  the Occupied voxels after 15 views, with the sensor's path and poses
-DIR is the folder of a run, or of an experiment with all its runs. Where several strategies are among
-them, the figures bear their names too.
+DIR is the folder of a run, or of an experiment with all its runs. Where several strategies or sensors are
+among them, the figures bear their names too.
 """
 
-# What a run is; folder: where it lies.
+# What a run is; folder: where it lies; strategy: with the sensor, where an experiment names one.
 Run = collections.namedtuple("Run", "folder scene strategy quality seed search")
 
 QUANTITIES = ("evaluations", "fitness", "mean_quality", "occupied_area_m2")
@@ -73,11 +73,14 @@ def read_run(folder, programs, view):
     """view: which view's search; None: the largest of the first ones."""
     search = json.loads(program(programs, "nextview_search", folder,
                                 *(["--view", view] if view else [])))
-    strategy = search["strategy"]
-    labels = folder / "experiment.json"
-    if labels.exists():
-        strategy = json.loads(labels.read_text(encoding="utf-8"))["strategy"]
-    return Run(folder, search["scene"], strategy, search["quality"], search["seed"], search)
+    scene, strategy = search["scene"], search["strategy"]
+    file = folder / "experiment.json"
+    if file.exists():  # a run of an experiment has names of its own for them
+        labels = json.loads(file.read_text(encoding="utf-8"))
+        scene, strategy = labels["scene"], labels["strategy"]
+        if labels["sensor"] != "default":
+            strategy += "-" + labels["sensor"]
+    return Run(folder, scene, strategy, search["quality"], search["seed"], search)
 
 
 def curve(runs, column):

@@ -63,7 +63,6 @@ int run(const nextview::RunOptions& options, nextview::RunSupervisor::Clock::tim
   using Style = nextview::Progress::Style;
   nextview::Progress progress(std::cout, ::isatty(STDOUT_FILENO) ? Style::Bar : Style::Lines,
                               setup.config.planner.max_views);
-  for (const std::string& note : setup.notes) progress.say(note);
   for (const std::string& warning : setup.warnings) progress.say("warning: " + warning);
   const FinishedRun finished =
       nextview::RunSupervisor(options, std::move(setup), folder, progress).carry_out(start);

@@ -135,6 +135,7 @@ void RunSupervisor::start_up() {
   // Each says so when it has loaded what it needs; only then is there somebody to hear a goal.
   pump_until([&] { return all_of(answering, heard_.fresh_statuses); });
   processes_->start_planner(options_.planner);
+  for (const std::string& note : setup_.notes) progress_.say(note);
   heard_.last_progress = Clock::now();
 }
 

@@ -6,6 +6,7 @@ import io
 import json
 import os
 import pathlib
+import signal
 import stat
 import subprocess
 import sys
@@ -20,6 +21,7 @@ FAKE_RUN = """#!/bin/bash
 here=$(cd "$(dirname "$0")" && pwd)
 echo "$*" >> "$here/calls"
 case "$*" in *"$(cat "$here/fails")"*) echo "nextview_run: it broke"; exit ${STATUS-6};; esac
+case "$*" in *"$(cat "$here/hangs")"*) exec sleep 600;; esac
 while [ $# -gt 0 ]; do [ "$1" = --out ] && out=$2; shift; done
 mkdir "$out" || exit 1
 cat > "$out/views.csv" <<X
@@ -102,6 +104,7 @@ class Runs(unittest.TestCase):
         (self.path / "programs").mkdir()
         self.program("programs/nextview_run", FAKE_RUN)
         self.fail_at("nothing")
+        self.hang_at("nothing")
 
     def program(self, name, text):
         file = self.path / name
@@ -113,6 +116,10 @@ class Runs(unittest.TestCase):
         """Runs whose options hold these words fail."""
         (self.path / "programs" / "fails").write_text(words, encoding="utf-8")
 
+    def hang_at(self, words):
+        """Runs whose options hold these words go on and on."""
+        (self.path / "programs" / "hangs").write_text(words, encoding="utf-8")
+
     def calls(self):
         file = self.path / "programs" / "calls"
         if not file.exists():
@@ -121,12 +128,14 @@ class Runs(unittest.TestCase):
         file.unlink()
         return sorted(calls)
 
-    def experiment(self, *arguments, **environment):
+    def command(self, *arguments):
         own, _, for_parallel = " ".join(arguments).partition(" -- ")
-        return subprocess.run(
-            [sys.executable, "-B", str(ROOT / "runner" / "experiment.py"), "--out", str(self.path / "out"),
-             "--programs", str(self.path / "programs"), *own.split(), "--", *for_parallel.split()],
-            capture_output=True, text=True, check=False, env=os.environ | environment)
+        return [sys.executable, "-B", str(ROOT / "runner" / "experiment.py"), "--out", str(self.path / "out"),
+                "--programs", str(self.path / "programs"), *own.split(), "--", *for_parallel.split()]
+
+    def experiment(self, *arguments, **environment):
+        return subprocess.run(self.command(*arguments), capture_output=True, text=True, check=False,
+                              env=os.environ | environment)
 
     def test_what_is_there_is_not_run_again_and_more_is_added(self):
         said = self.experiment("--scenes room --seeds 2")
@@ -164,6 +173,25 @@ class Runs(unittest.TestCase):
         self.assertEqual(said.returncode, 0, said.stderr)
         self.assertEqual(len(self.calls()), 1)
         self.assertIn("paper, 3 seeds", said.stdout)
+
+    def test_goes_on_where_it_was_interrupted(self):
+        self.hang_at("--seed 3")
+        running = subprocess.Popen(self.command("--scenes room --seeds 4 --quality off -- -j 1"),
+                                   stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True)
+        line = ""
+        while not line.startswith("2/4"):
+            line = running.stdout.readline()
+            self.assertNotEqual(line, "", "it ended by itself")
+        running.send_signal(signal.SIGINT)
+        _, errors = running.communicate(timeout=60)
+        self.assertEqual(running.returncode, 130)
+        self.assertIn("interrupted; the same command goes on from here", errors)
+        self.calls()
+        self.hang_at("nothing")
+        said = self.experiment("--scenes room --seeds 4 --quality off")
+        self.assertEqual(said.returncode, 0, said.stdout + said.stderr)
+        self.assertIn("4 runs, of which 2 are there already", said.stdout)
+        self.assertEqual(["--seed 3" in call or "--seed 4" in call for call in self.calls()], [True, True])
 
     def test_what_an_interrupted_run_has_left_is_no_run(self):
         for name in ("room-paper-default-off-seed1.part", "room-paper-default-off-seed1"):

@@ -134,7 +134,9 @@ TEST(RunSetup, LeavesUnitAndAxisToTheFileUnlessTheyAreGiven) {
 
 // A room of 4 x 4 x 3 m on a footing 1.5 m deep, as an OBJ file.
 std::string room_on_a_footing() {
-  const auto file = std::filesystem::path(::testing::TempDir()) / "room_on_a_footing.obj";
+  const auto file = std::filesystem::path(::testing::TempDir()) /
+                    (std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) +
+                     "-room_on_a_footing.obj");
   std::ofstream obj(file);
   int vertices = 0;
   const auto box = [&](double x0, double y0, double z0, double x1, double y1, double z1) {

@@ -175,7 +175,7 @@ TEST(IncludeArrows, HideEmbreeAndAssimp) {
   }
   EXPECT_EQ(users["embree"], std::set<std::string>{"scene/scene.cpp"});
   EXPECT_EQ(users["assimp"],
-            (std::set<std::string>{"exporter/mesh_writer.cpp", "scene/mesh_file.cpp"}));
+            (std::set<std::string>{"exporter/mesh_writer.cpp", "scene/cad_file.cpp"}));
 }
 
 TEST(IncludeArrows, LeaveClocksAndGeneratorsOutOfLibraries) {
