@@ -19,7 +19,7 @@ namespace {
 TEST(Refusals, AreCollisionsWhereTheBodyWouldTouchSomething) {
   const TemporaryFolder folder;
   const Outcome outcome = run_views(
-      folder / "run", 8, {"--clearance", "0.05", "--body-radius", "0.3", "--max-attempts", "20"});
+      folder / "run", 30, {"--clearance", "0.05", "--body-radius", "0.3", "--max-attempts", "20"});
   RunLog log(folder / "run" / "run.lcmlog", std::nullopt, RangeImages::OnlyCount);
   log.read_on();
   int refused = 0;
