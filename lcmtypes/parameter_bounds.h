@@ -36,6 +36,7 @@ constexpr double kUnlimited = std::numeric_limits<double>::max();
 // Sensor.
 inline constexpr Bounds kColumns{"columns", 2, 4096};
 inline constexpr Bounds kRows{"rows", 2, 4096};
+inline constexpr Bounds kBaseline{"baseline_m", 0.0, 10.0};
 inline constexpr Bounds kRangeMin{"range_min_m", 0.0, 1e5};
 inline constexpr Bounds kRangeMax{"range_max_m", 1e-4, 1e5};
 inline constexpr Bounds kRangeNoise{"range_noise_m", 0.0, 100.0};
@@ -60,6 +61,8 @@ inline constexpr Bounds kMaxAttempts{"max_attempts", 1, 1e6};
 inline constexpr Bounds kThreads{"threads", 1, 256};
 inline constexpr Bounds kStep{"step_min_m or step_max_m", 1e-4, 1e5};
 inline constexpr Bounds kFitnessTolerance{"fitness_tolerance", 0.0, 2.0};
+/// Both 0: the planner chooses. A view is predicted in many orientations at many positions.
+inline constexpr Bounds kPredictionRays{"prediction_columns or prediction_rows", 2, 512};
 /// What was tried for one goal has to fit one search_t.
 inline constexpr Bounds kMaxEvaluations{"max_evaluations", 4, 1200};
 inline constexpr Bounds kClearance{"clearance_m", 0.0, 5.0};

@@ -131,7 +131,8 @@ std::string check(const arrival_t& arrival) {
 
 std::string check(const range_image_t& image) {
   Checks checks = check_key(image);
-  checks.require(image.geometry == 0, "geometry " + std::to_string(image.geometry));
+  checks.require(image.geometry >= 0 && image.geometry < kSensorKinds,
+                 "geometry " + std::to_string(image.geometry));
   check_part(checks, image);
   checks.require(on_unit_circle(image.entry_sin, image.entry_cos),
                  "sine and cosine of a column or row do not belong together");

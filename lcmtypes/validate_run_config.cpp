@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cstdint>
 #include <numbers>
+#include <stdexcept>
 #include <string>
 
 #include "lcmtypes/validate.h"
 #include "lcmtypes/validate_checks.h"
+#include "sensor/sensor_geometry.h"
 
 namespace nextview {
 namespace {
@@ -27,18 +29,25 @@ void check_scene(Checks& checks, const run_config_t& config) {
   checks.digest("scene_digest", config.scene_digest);
 }
 
+/// Whether there can be a sensor of this geometry, by what makes its rays.
+void check_rays(Checks& checks, const sensor_config_t& sensor) {
+  SensorParameters parameters;
+  std::ranges::copy(sensor.geometry_parameter, parameters.begin());
+  try {
+    make_ray_table(make_sensor(static_cast<SensorKind>(sensor.geometry), sensor.columns,
+                               sensor.rows, parameters));
+  } catch (const std::invalid_argument& error) {
+    checks.require(false, error.what());
+  }
+}
+
 void check_sensor(Checks& checks, const sensor_config_t& sensor) {
-  checks.require(sensor.geometry == 0,
-                 "geometry " + std::to_string(sensor.geometry) + " is not 0, the tilted line scan");
-  const double horizontal_rad = sensor.geometry_parameter[0];
-  const double vertical_rad = sensor.geometry_parameter[1];
-  checks.positive("horizontal aperture, rad", horizontal_rad);
-  checks.positive("vertical aperture, rad", vertical_rad);
-  checks.require(std::max(horizontal_rad, vertical_rad) < std::numbers::pi,
-                 "an aperture of 180 degrees or more");
-  for (int i = 2; i < 8; ++i) checks.neutral("geometry_parameter", sensor.geometry_parameter[i]);
+  checks.require(sensor.geometry >= 0 && sensor.geometry < kSensorKinds,
+                 "geometry " + std::to_string(sensor.geometry) +
+                     " is not 0, 1 or 2: tilted line scan, spherical, line striper");
   checks.within(bounds::kColumns, sensor.columns);
   checks.within(bounds::kRows, sensor.rows);
+  if (checks.reason().empty()) check_rays(checks, sensor);
   checks.within(bounds::kRangeMin, sensor.range_min_m);
   checks.within(bounds::kRangeMax, sensor.range_max_m);
   checks.require(sensor.range_min_m < sensor.range_max_m, "range_min_m is not below range_max_m");
@@ -82,9 +91,11 @@ void check_planner(Checks& checks, const planner_config_t& planner) {
   checks.require(planner.quality_weight == 0.0 || planner.quality_weight == 1.0,
                  "quality_weight is neither 0 nor 1");
   checks.require(planner.stop_rule == 1 || planner.stop_rule == 2, "stop_rule is not 1 or 2");
+  if (planner.prediction_columns != 0 || planner.prediction_rows != 0) {
+    checks.within(bounds::kPredictionRays, planner.prediction_columns);
+    checks.within(bounds::kPredictionRays, planner.prediction_rows);
+  }
   // Nothing reads these yet: what is asked for must not be ignored.
-  checks.neutral("prediction_columns", planner.prediction_columns);
-  checks.neutral("prediction_rows", planner.prediction_rows);
   checks.neutral("structure_weight", planner.structure_weight);
   checks.neutral("navigation_weight", planner.navigation_weight);
   checks.within(bounds::kPathCost, planner.path_cost_per_m);

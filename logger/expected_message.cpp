@@ -108,7 +108,8 @@ std::vector<std::string> contradictions_of(const ReceivedRangeImage& received,
   demand(received.utime >= arrival.utime, "it was taken before the robot arrived");
   if (!is_simulated(config)) return found;
   const RayTable rays = make_ray_table(sensor_of(config));
-  demand(image.rays.columns() == config.sensor.columns && image.rays.rows() == config.sensor.rows,
+  demand(image.rays.kind == rays.kind, "its geometry is not the configured one");
+  demand(image.rays.columns() == rays.columns() && image.rays.rows() == rays.rows(),
          "its raster is not the configured one");
   demand(near(image.rays.column_sin, rays.column_sin) &&
              near(image.rays.column_cos, rays.column_cos) &&

@@ -48,10 +48,18 @@ std::vector<Orientation> orientations_of(const run_config_t& config) {
   return icosahedron_orientations(subdivisions);
 }
 
+PredictionRaster raster_of(const run_config_t& config) {
+  PredictionRays rays;
+  if (config.planner.prediction_columns > 0) {
+    rays = {config.planner.prediction_columns, config.planner.prediction_rows};
+  }
+  return prediction_raster(sensor_of(config), range_limits_of(config), rays);
+}
+
 /// Every ray of every orientation, or with more than 20 orientations and quality off one panorama
 /// that answers them all.
 std::unique_ptr<ViewPredictor> make_predictor(const run_config_t& config) {
-  const PredictionRaster raster = prediction_raster(sensor_of(config), range_limits_of(config));
+  const PredictionRaster raster = raster_of(config);
   const bool use_quality = config.planner.quality_weight > 0.0;
   if (config.planner.directions > 20 && !use_quality) {
     return std::make_unique<PanoramaViewPredictor>(raster, config.map.voxel_size_m,
@@ -83,9 +91,9 @@ std::unique_ptr<Strategy> make_strategy(const run_config_t& config) {
                                            make_predictor(config));
   }
   if (config.strategy == SurfaceStrategy::kName) {
-    return std::make_unique<SurfaceStrategy>(
-        prediction_raster(sensor_of(config), range_limits_of(config)), config.map.voxel_size_m,
-        orientations_of(config), surface_parameters_of(config));
+    return std::make_unique<SurfaceStrategy>(raster_of(config), config.map.voxel_size_m,
+                                             orientations_of(config),
+                                             surface_parameters_of(config));
   }
   throw std::invalid_argument("there is no strategy '" + config.strategy + "'");
 }

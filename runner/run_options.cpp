@@ -148,36 +148,38 @@ void add_run_options(CLI::App& app, RunOptions& options) {
 }
 
 void add_sensor_options(CLI::App& app, RunOptions& options) {
-  const std::string group = "Sensor (tilted line scan, paper eq. 5)";
-  app.add_option("--columns", options.columns, "Columns of a range image")
-      ->check(number_within(bounds::kColumns))
+  const std::string group = "Sensor";
+  SensorOptions& given = options.given_of_sensor;
+  app.add_option("--sensor", options.sensor,
+                 "paper, panorama, line_striper, another name in --sensors, or a file as those "
+                 "there; what follows goes before what it says")
       ->capture_default_str()
       ->group(group);
-  app.add_option("--rows", options.rows, "Rows of a range image")
-      ->check(number_within(bounds::kRows))
+  app.add_option("--sensors", options.sensors_folder, "Folder of the sensors known by name")
       ->capture_default_str()
+      ->group(group);
+  app.add_option("--columns", given.columns, "Columns of a range image")
+      ->check(number_within(bounds::kColumns))
+      ->group(group);
+  app.add_option("--rows", given.rows, "Rows of a range image")
+      ->check(number_within(bounds::kRows))
       ->group(group);
   app.add_option("--aperture", options.aperture_deg,
-                 "Horizontal aperture, degrees; the vertical one follows from it")
-      ->check(number_in(1.0, 89.0))
-      ->capture_default_str()
+                 "Horizontal aperture, degrees; a tilted line scan's vertical one follows from it")
+      ->check(number_in(1.0, 360.0))
       ->group(group);
-  app.add_option("--range-min", options.range.min_m, "Nearer surfaces give no valid range, m")
+  app.add_option("--range-min", given.range_min_m, "Nearer surfaces give no valid range, m")
       ->check(number_within(bounds::kRangeMin))
-      ->capture_default_str()
       ->group(group);
-  app.add_option("--range-max", options.range.max_m, "Farther surfaces give no return, m")
+  app.add_option("--range-max", given.range_max_m, "Farther surfaces give no return, m")
       ->check(number_within(bounds::kRangeMax))
-      ->capture_default_str()
       ->group(group);
-  app.add_option("--range-noise-m", options.range_noise_m,
+  app.add_option("--range-noise-m", given.range_noise_m,
                  "Standard deviation of Gaussian range noise, m")
       ->check(number_within(bounds::kRangeNoise))
-      ->capture_default_str()
       ->group(group);
-  app.add_option("--scan-duration", options.scan_duration_s, "Simulated time a scan takes, s")
+  app.add_option("--scan-duration", given.scan_duration_s, "Simulated time a scan takes, s")
       ->check(number_within(bounds::kScanDuration))
-      ->capture_default_str()
       ->group(group);
 }
 
@@ -273,6 +275,9 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
          "320")
       ->check(CLI::IsMember({20, 80, 320, 1280}))
       ->group(group);
+  app.add_option("--prediction-rays", options.prediction_rays,
+                 "COLUMNSxROWS: the rays a view is predicted with, at most; default 64x32")
+      ->group(group);
   app.add_option("--threads", options.threads,
                  "Threads the planner may use; the result does not depend on it")
       ->check(number_within(bounds::kThreads))
@@ -319,12 +324,12 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
       ->group(group);
 }
 
-/// Of an installation, beside its bin; else of the sources.
-std::string scenes_folder() {
+/// A folder of data: of an installation, beside its bin; else of the sources.
+std::string data_folder(const std::string& name, const char* of_sources) {
   namespace fs = std::filesystem;
   const fs::path bin = fs::read_symlink("/proc/self/exe").parent_path();
-  const fs::path installed = bin.parent_path() / NEXTVIEW_DATA_FOLDER / "scenes";
-  return fs::is_directory(installed) ? installed.string() : NEXTVIEW_SCENES_FOLDER;
+  const fs::path installed = bin.parent_path() / NEXTVIEW_DATA_FOLDER / name;
+  return fs::is_directory(installed) ? installed.string() : of_sources;
 }
 
 }  // namespace
@@ -338,7 +343,8 @@ const char* const kRunDescription =
 std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_status,
                                             const std::string& description) {
   RunOptions options;
-  options.scenes_folder = scenes_folder();
+  options.scenes_folder = data_folder("scenes", NEXTVIEW_SCENES_FOLDER);
+  options.sensors_folder = data_folder("sensors", NEXTVIEW_SENSORS_FOLDER);
   CLI::App app{description};
   app.footer(
       "Examples:\n"

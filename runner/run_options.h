@@ -9,7 +9,7 @@
 #include "planner/paper_strategy.h"
 #include "planner/surface_strategy.h"
 #include "planner/termination.h"
-#include "sensor/sensor_geometry.h"
+#include "sensor/sensor_catalog.h"
 
 namespace nextview {
 
@@ -35,12 +35,10 @@ struct RunOptions {
   std::string out;  ///< folder of the run; empty: a new one in runs_folder
   std::string runs_folder = "runs";
 
-  int columns = 64;
-  int rows = 30;
-  double aperture_deg = 60.0;
-  RangeLimits range;
-  double range_noise_m = 0.0;
-  double scan_duration_s = 1.0;
+  std::string sensor = "paper";  ///< a name in sensors_folder, or a file
+  std::string sensors_folder;    ///< empty: those of this repository
+  std::optional<double> aperture_deg;
+  SensorOptions given_of_sensor;  ///< but the aperture
 
   double body_radius_m = BaseLimits{}.body_radius_m;
   std::optional<double> lift_min_m;
@@ -61,6 +59,7 @@ struct RunOptions {
   double least_gain_m2 = SurfaceParameters{}.least_new_area_m2;
   bool return_home = false;
   std::optional<int> directions;  ///< 20 for the paper's strategy, 320 for ours
+  std::string prediction_rays;    ///< COLUMNSxROWS; empty: the planner chooses
   int threads = 1;
   double step_min_m = PlannerParameters{}.step_min_m;
   double step_max_m = PlannerParameters{}.step_max_m;

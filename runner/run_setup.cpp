@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "base_sim/base_sim_process.h"
+#include "lcmtypes/parameter_bounds.h"
 #include "lcmtypes/program_version.h"
 #include "lcmtypes/validate.h"
 #include "mapper/mapper_config.h"
@@ -72,20 +73,36 @@ void fill_start(run_config_t& config, const RunOptions& options, const SceneDesc
   config.base.start_tilt_rad = options.start_tilt_deg * kRadPerDegree;
 }
 
-void fill_sensor(run_config_t& config, const RunOptions& options) {
-  if (options.range.min_m >= options.range.max_m) {
+SensorModel sensor_given(const RunOptions& options) {
+  SensorOptions given = options.given_of_sensor;
+  if (options.aperture_deg) given.aperture_rad = *options.aperture_deg * kRadPerDegree;
+  SensorModel sensor;
+  try {
+    const bool ours = options.sensors_folder.empty();
+    sensor =
+        find_sensor(options.sensor, ours ? NEXTVIEW_SENSORS_FOLDER : options.sensors_folder, given);
+  } catch (const SensorError& error) {
+    throw SetupError("--sensor: " + std::string(error.what()));
+  }
+  if (sensor.limits.min_m >= sensor.limits.max_m) {
     throw SetupError("--range-min must be below --range-max");
   }
-  const TiltedLineScan sensor = TiltedLineScan::with_aperture(options.columns, options.rows,
-                                                              options.aperture_deg * kRadPerDegree);
-  config.sensor.columns = sensor.columns;
-  config.sensor.rows = sensor.rows;
-  config.sensor.geometry_parameter[0] = sensor.horizontal_aperture_rad;
-  config.sensor.geometry_parameter[1] = sensor.vertical_aperture_rad;
-  config.sensor.range_min_m = options.range.min_m;
-  config.sensor.range_max_m = options.range.max_m;
-  config.sensor.range_noise_m = options.range_noise_m;
-  config.sensor.scan_duration_s = options.scan_duration_s;
+  return sensor;
+}
+
+void fill_prediction_rays(planner_config_t& planner, const std::string& given) {
+  if (given.empty()) return;
+  int columns = 0;
+  int rows = 0;
+  char beyond = 0;
+  const bool read = std::sscanf(given.c_str(), "%dx%d%c", &columns, &rows, &beyond) == 2;
+  if (!read || !bounds::kPredictionRays.contain(columns) ||
+      !bounds::kPredictionRays.contain(rows)) {
+    throw SetupError("--prediction-rays must be like 64x32, both numbers " +
+                     bounds::kPredictionRays.range() + ", not '" + given + "'");
+  }
+  planner.prediction_columns = columns;
+  planner.prediction_rows = rows;
 }
 
 /// The height of what is straight under the start, where the robot stands; of the scene's lowest
@@ -167,6 +184,7 @@ void fill_planner(run_config_t& config, const RunOptions& options) {
   config.planner.least_gain_m2 = options.least_gain_m2;
   config.planner.return_home = options.return_home;
   config.planner.directions = options.directions.value_or(paper ? 20 : 320);
+  fill_prediction_rays(config.planner, options.prediction_rays);
   config.planner.threads = options.threads;
   config.planner.step_min_m = options.step_min_m;
   config.planner.step_max_m = options.step_max_m;
@@ -217,7 +235,7 @@ double fill_rest(run_config_t& config, const RunOptions& options,
   config.program_version = program_version();
   config.strategy = options.strategy;
   fill_start(config, options, description, start_m);
-  fill_sensor(config, options);
+  fill_sensor(config.sensor, sensor_given(options));
   const double floor_m = floor_under_start_m(config, scene, bounds);
   fill_base(config, options, bounds, floor_m);
   fill_map(config, options, bounds);
@@ -318,9 +336,8 @@ ViewBoundQuestion bound_question_of(const RunOptions& options, const run_config_
   ViewBoundQuestion question;
   question.start = start_pose_of(config);
   question.visibility = visibility_of(config);
-  question.poses.sensor = TiltedLineScan::with_aperture(options.columns, options.rows,
-                                                        options.aperture_deg * kRadPerDegree);
-  question.poses.limits = options.range;
+  question.poses.sensor = sensor_of(config);
+  question.poses.limits = range_limits_of(config);
   question.poses.grid = grid_of(config);
   question.poses.spacing_m = options.bound_spacing_m;
   return question;

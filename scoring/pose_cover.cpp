@@ -84,18 +84,19 @@ std::vector<Eigen::Vector3d> at_spacing(const std::vector<Eigen::Vector3d>& posi
 /// Finds what a pose covers; one a thread.
 class CoverFinder {
  public:
-  CoverFinder(const Scene& scene, const RayTable& rays, const RangeLimits& limits,
+  CoverFinder(const Scene& scene, const RayTable& rays, const PoseParameters& parameters,
               const SampledVoxels& voxels)
       : scene_(&scene),
         rays_(&rays),
-        limits_(limits),
+        limits_(parameters.limits),
+        baseline_m_(baseline_m_of(parameters.sensor)),
         voxels_(&voxels),
         seen_in_(voxels.weights().size(), 0) {}
 
   std::vector<std::uint32_t> covered_from(const SensorPose& pose) {
     ++call_;
     std::vector<std::uint32_t> covered;
-    const RangeImage image = scan(*scene_, *rays_, limits_, pose, 0.0, no_noise_);
+    const RangeImage image = scan(*scene_, *rays_, limits_, pose, 0.0, no_noise_, baseline_m_);
     std::size_t pixel = 0;
     for (int v = 0; v < rays_->rows(); ++v) {
       for (int u = 0; u < rays_->columns(); ++u) {
@@ -115,6 +116,7 @@ class CoverFinder {
   const Scene* scene_;
   const RayTable* rays_;
   RangeLimits limits_;
+  double baseline_m_;
   const SampledVoxels* voxels_;
   RandomStream no_noise_{0, 0, 0, RandomPurpose::RangeNoise};
   std::vector<std::uint32_t> seen_in_;  ///< by voxel: the last call that met it
@@ -153,7 +155,7 @@ PoseCover cover_of_poses(const Scene& scene, const SensorPose& start,
     covered.assign(std::min(kPosesAtATime, cover.poses.size() - first), {});
     std::atomic<std::size_t> next = 0;
     on_all_cores([&] {
-      CoverFinder finder(scene, rays, parameters.limits, voxels);
+      CoverFinder finder(scene, rays, parameters, voxels);
       for (std::size_t i = next++; i < covered.size() && !stop.stop_requested(); i = next++) {
         covered[i] = finder.covered_from(cover.poses[first + i]);
         ++progress->done;

@@ -14,7 +14,7 @@ namespace nextview {
 
 /// The poses that are looked at, and with which sensor.
 struct PoseParameters {
-  TiltedLineScan sensor = TiltedLineScan::paper();
+  SensorGeometry sensor = TiltedLineScan::paper();
   RangeLimits limits;
   VoxelGrid grid;           ///< of the map that is to be filled
   double spacing_m = 0.40;  ///< of positions

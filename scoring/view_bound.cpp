@@ -16,7 +16,7 @@ namespace nextview {
 namespace {
 
 std::string key_of(const std::string& scene_digest, const ViewBoundQuestion& question) {
-  KeptKey key("view bound", 1);
+  KeptKey key("view bound", 2);
   key.add(scene_digest);
   const auto add = [&key](const Eigen::Vector3d& vector) {
     for (int axis = 0; axis < 3; ++axis) key.add(vector[axis]);
@@ -31,12 +31,12 @@ std::string key_of(const std::string& scene_digest, const ViewBoundQuestion& que
        {question.start.pan_rad, question.start.tilt_rad, reach.spacing_m, reach.clearance_m,
         reach.join_within_m, question.visibility.range_max_m, question.visibility.samples_per_m2,
         static_cast<double>(question.visibility.most_samples),
-        static_cast<double>(poses.sensor.columns), static_cast<double>(poses.sensor.rows),
-        poses.sensor.horizontal_aperture_rad, poses.sensor.vertical_aperture_rad,
-        poses.limits.min_m, poses.limits.max_m, poses.grid.voxel_size_m, poses.spacing_m,
-        static_cast<double>(poses.subdivisions)}) {
+        static_cast<double>(kind_of(poses.sensor)), static_cast<double>(columns_of(poses.sensor)),
+        static_cast<double>(rows_of(poses.sensor)), poses.limits.min_m, poses.limits.max_m,
+        poses.grid.voxel_size_m, poses.spacing_m, static_cast<double>(poses.subdivisions)}) {
     key.add(value);
   }
+  for (const double parameter : parameters_of(poses.sensor)) key.add(parameter);
   for (const double share : question.shares) key.add(share);
   return key.text();
 }

@@ -5,22 +5,25 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "lcmtypes/decode.h"
+#include "sensor/range_picture.h"
 
 namespace nextview {
 namespace {
 
 constexpr std::size_t kEntryBytes = 2 * sizeof(double);
 
-range_image_t describe(const RangeImage& image, int view, int attempt, std::int64_t utime) {
+range_image_t describe(const RangeImage& image, const PictureRays& picture, int view, int attempt,
+                       std::int64_t utime) {
   range_image_t message{};
   message.utime = utime;
   message.view = view;
   message.attempt = attempt;
-  message.geometry = 0;
-  message.columns = image.rays.columns();
-  message.rows = image.rays.rows();
+  message.geometry = static_cast<std::int8_t>(picture.kind);
+  message.columns = static_cast<std::int32_t>(picture.column_sin.size());
+  message.rows = static_cast<std::int32_t>(picture.row_sin.size());
   message.range_min_m = image.limits.min_m;
   message.range_max_m = image.limits.max_m;
   message.pan_rad = image.pose.pan_rad;
@@ -65,9 +68,10 @@ void append(std::vector<T>& to, const std::vector<T>& from) {
 }
 
 /// The rays of a table's entries: those of the columns, then those of the rows.
-RayTable rays_of(const std::vector<double>& sines, const std::vector<double>& cosines,
-                 int columns) {
-  return {{sines.begin(), sines.begin() + columns},
+PictureRays rays_of(SensorKind kind, const std::vector<double>& sines,
+                    const std::vector<double>& cosines, int columns) {
+  return {kind,
+          {sines.begin(), sines.begin() + columns},
           {cosines.begin(), cosines.begin() + columns},
           {sines.begin() + columns, sines.end()},
           {cosines.begin() + columns, cosines.end()}};
@@ -88,8 +92,8 @@ ReceivedRangeImage join(const std::map<int, range_image_t>& parts) {
   }
   image.pose = {image.position_m, first.pan_rad, first.tilt_rad};
   image.limits = {first.range_min_m, first.range_max_m};
-  image.range_m.reserve(static_cast<std::size_t>(first.columns) *
-                        static_cast<std::size_t>(first.rows));
+  const auto columns = static_cast<std::size_t>(first.columns);
+  image.range_m.reserve(columns * static_cast<std::size_t>(first.rows));
   std::vector<double> sines;
   std::vector<double> cosines;
   for (const auto& [number, part] : parts) {
@@ -97,7 +101,9 @@ ReceivedRangeImage join(const std::map<int, range_image_t>& parts) {
     append(cosines, part.entry_cos);
     append(image.range_m, part.range_m);
   }
-  image.rays = rays_of(sines, cosines, first.columns);
+  const auto kind = static_cast<SensorKind>(first.geometry);
+  image.rays = table_of_picture(rays_of(kind, sines, cosines, first.columns));
+  if (has_upright_lines(kind)) image.range_m = transposed(image.range_m, columns);
   return received;
 }
 
@@ -121,20 +127,27 @@ std::vector<range_image_t> range_image_messages(const RangeImage& image, int vie
                                 " to " + std::to_string(kPartBytes) + " bytes, not " +
                                 std::to_string(part_bytes));
   }
-  std::vector<double> sines = image.rays.column_sin;
-  append(sines, image.rays.row_sin);
-  std::vector<double> cosines = image.rays.column_cos;
-  append(cosines, image.rays.row_cos);
+  const PictureRays picture = picture_rays(image.rays);
+  std::vector<double> sines = picture.column_sin;
+  append(sines, picture.row_sin);
+  std::vector<double> cosines = picture.column_cos;
+  append(cosines, picture.row_cos);
 
-  const range_image_t description = describe(image, view, attempt, utime);
+  std::vector<float> turned;
+  if (has_upright_lines(picture.kind)) {
+    turned = transposed(image.range_m, image.rays.column_sin.size());
+  }
+  const std::vector<float>& range_m = turned.empty() ? image.range_m : turned;
+
+  const range_image_t description = describe(image, picture, view, attempt, utime);
   std::vector<range_image_t> messages;
   std::size_t entry = 0;
   std::size_t pixel = 0;
-  while (pixel < image.range_m.size()) {
+  while (pixel < range_m.size()) {
     const std::size_t entries = std::min(part_bytes / kEntryBytes, sines.size() - entry);
     const std::size_t room =
         entry + entries < sines.size() ? 0 : part_bytes - entries * kEntryBytes;
-    const std::size_t pixels = std::min(room / sizeof(float), image.range_m.size() - pixel);
+    const std::size_t pixels = std::min(room / sizeof(float), range_m.size() - pixel);
     range_image_t& message = messages.emplace_back(description);
     message.part = static_cast<std::int32_t>(messages.size()) - 1;
     message.first_entry = static_cast<std::int32_t>(entry);
@@ -146,7 +159,7 @@ std::vector<range_image_t> range_image_messages(const RangeImage& image, int vie
                              cosines.begin() + entry_end);
     message.first_pixel = static_cast<std::int32_t>(pixel);
     message.pixels = static_cast<std::int32_t>(pixels);
-    const auto first = image.range_m.begin() + static_cast<std::ptrdiff_t>(pixel);
+    const auto first = range_m.begin() + static_cast<std::ptrdiff_t>(pixel);
     message.range_m.assign(first, first + static_cast<std::ptrdiff_t>(pixels));
     entry += entries;
     pixel += pixels;

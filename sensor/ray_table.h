@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace nextview {
@@ -17,7 +18,7 @@ namespace nextview {
 ///
 /// For a tilted line scan (eq. 5) the line frame is the sensor's. A sensor whose lines stand
 /// upright and are turned about the sensor's z, as a spherical scanner's and a line striper's, is
-/// the same with rows and columns exchanged and the frame turned (Lines::Upright): a row of the
+/// the same with rows and columns exchanged and the frame turned: a row of the
 /// table is then a column of its picture. So whoever works on rows of pixels needs no other
 /// formula.
 ///
@@ -28,14 +29,18 @@ namespace nextview {
 /// (P11 has voxels larger than the errors of the points). A sensor that moves while it scans fits
 /// as one image for each place it stands at, each from its own position.
 
-/// How the lines of a sensor lie in its frame: along x and turned about it, or along z and turned
-/// about that.
-enum class Lines { Level, Upright };
+/// The sensors there are (P5), each in a header of its own. Numbered as in messages.
+enum class SensorKind : std::int8_t { TiltedLineScan = 0, Spherical = 1, LineStriper = 2 };
+constexpr int kSensorKinds = 3;
 
-/// The line frame seen from the sensor's: x, y, z in columns. A rotation whose entries are 0 and 1.
-inline Eigen::Matrix3d sensor_from_lines(Lines lines) {
+/// Whether the lines of a sensor stand upright, along its z axis, and are turned about it; or else
+/// lie along its x axis.
+constexpr bool has_upright_lines(SensorKind kind) { return kind != SensorKind::TiltedLineScan; }
+
+/// The line frame seen from the sensor's: its x, y and z in columns.
+inline Eigen::Matrix3d sensor_from_lines(SensorKind kind) {
   Eigen::Matrix3d turn = Eigen::Matrix3d::Identity();
-  if (lines == Lines::Upright) turn << 0, 0, -1, 0, 1, 0, 1, 0, 0;
+  if (has_upright_lines(kind)) turn << 0, 0, -1, 0, 1, 0, 1, 0, 0;
   return turn;
 }
 
@@ -84,7 +89,7 @@ struct RayTable {
   std::vector<double> column_cos;  ///< cos(a_u), size N
   std::vector<double> row_sin;     ///< sin(b_v), size M
   std::vector<double> row_cos;     ///< cos(b_v), size M
-  Lines lines = Lines::Level;
+  SensorKind kind = SensorKind::TiltedLineScan;
 
   int columns() const { return static_cast<int>(column_sin.size()); }
   int rows() const { return static_cast<int>(row_sin.size()); }
@@ -96,13 +101,13 @@ struct RayTable {
     const auto row = static_cast<std::size_t>(v);
     const Eigen::Vector3d n(-column_sin[column], column_cos[column] * row_cos[row],
                             column_cos[column] * row_sin[row]);
-    return lines == Lines::Level ? n : Eigen::Vector3d(-n.z(), n.y(), n.x());
+    return has_upright_lines(kind) ? Eigen::Vector3d(-n.z(), n.y(), n.x()) : n;
   }
 
   /// The frame of row(), to be worked out once for all rows.
   Eigen::Matrix3d world_from_lines(const Eigen::Matrix3d& world_from_sensor) const {
-    if (lines == Lines::Level) return world_from_sensor;
-    return world_from_sensor * sensor_from_lines(lines);
+    if (!has_upright_lines(kind)) return world_from_sensor;
+    return world_from_sensor * sensor_from_lines(kind);
   }
   /// The rays of row v in the world: R n_uv of eq. 1.
   RayRow row(int v, const Eigen::Matrix3d& world_from_lines) const {

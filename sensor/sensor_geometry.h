@@ -1,23 +1,38 @@
 #pragma once
 
-#include "sensor/ray_table.h"
+#include <array>
+#include <variant>
+
+#include "sensor/line_striper.h"
+#include "sensor/spherical_scanner.h"
+#include "sensor/tilted_line_scan.h"
 
 namespace nextview {
 
-/// A tilted line scan sensor (paper eq. 5, P4): N columns by M rows, each row a line scan tilted
-/// about the sensor's x axis.
-struct TiltedLineScan {
-  int columns = 64;                      ///< N
-  int rows = 30;                         ///< M
-  double horizontal_aperture_rad = 0.0;  ///< alpha
-  double vertical_aperture_rad = 0.0;    ///< beta
+/// Any of the sensors (P5), by SensorKind. make_ray_table gives the rays of each: see its header.
+using SensorGeometry = std::variant<TiltedLineScan, SphericalScanner, LineStriper>;
 
-  /// The paper's sensor: 64 x 30, alpha = 60 degrees, beta = atan((M/N) tan alpha) = 39.07 degrees.
-  static TiltedLineScan paper();
-  /// Any raster with the paper's relation between the two apertures: beta = atan((M/N) tan alpha).
-  /// @throws std::invalid_argument unless columns, rows >= 2 and 0 < alpha < 90 degrees
-  static TiltedLineScan with_aperture(int columns, int rows, double horizontal_aperture_rad);
-};
+/// The same sensor with other numbers of pixels over the same apertures.
+SensorGeometry with_raster(SensorGeometry sensor, int columns, int rows);
+int columns_of(const SensorGeometry& sensor);  ///< of its picture
+int rows_of(const SensorGeometry& sensor);
+
+SensorKind kind_of(const SensorGeometry& sensor);
+
+/// What each sensor has besides its raster, angles in radians and lengths in metres, in the order
+/// of its struct; 0 beyond. As messages carry it.
+using SensorParameters = std::array<double, 8>;
+SensorParameters parameters_of(const SensorGeometry& sensor);
+/// The sensor that has these. Whether there can be such a sensor, make_ray_table says.
+/// @throws std::invalid_argument unless what is beyond a kind's parameters is 0
+SensorGeometry make_sensor(SensorKind kind, int columns, int rows,
+                           const SensorParameters& parameters);
+
+/// How far the camera of a line striper stands from its light; 0 for all others.
+double baseline_m_of(const SensorGeometry& sensor);
+
+/// @throws std::invalid_argument as the overload for the sensor does
+RayTable make_ray_table(const SensorGeometry& sensor);
 
 /// Range limits of the sensor.
 struct RangeLimits {
@@ -25,9 +40,12 @@ struct RangeLimits {
   double max_m = 30.0;  ///< a farther surface gives no return (+inf)
 };
 
-/// The rays of a tilted line scan sensor (eq. 5): alpha_u = alpha (1/2 - u/(N-1)),
-/// beta_v = beta (1/2 - v/(M-1)).
-/// @throws std::invalid_argument unless columns, rows >= 2 and both apertures are in (0, pi)
-RayTable make_ray_table(const TiltedLineScan& sensor);
+/// A sensor as a run has it.
+struct SensorModel {
+  SensorGeometry geometry = TiltedLineScan::paper();
+  RangeLimits limits;
+  double range_noise_m = 0.0;    ///< standard deviation of Gaussian range noise
+  double scan_duration_s = 1.0;  ///< simulated time one scan takes
+};
 
 }  // namespace nextview

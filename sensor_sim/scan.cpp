@@ -4,6 +4,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "sensor_sim/camera_shadow.h"
 #include "sensor_sim/measured_range.h"
 #include "sensor_sim/strip_caster.h"
 
@@ -40,7 +41,8 @@ void measure_noisy_ranges(const RangeLimits& limits, double range_noise_m, Rando
 }  // namespace
 
 RangeImage scan(const Scene& scene, const RayTable& rays, const RangeLimits& limits,
-                const SensorPose& pose, double range_noise_m, RandomStream& noise) {
+                const SensorPose& pose, double range_noise_m, RandomStream& noise,
+                double baseline_m) {
   check(rays, limits, pose, range_noise_m);
   RangeImage image;
   image.pose = pose;
@@ -51,11 +53,13 @@ RangeImage scan(const Scene& scene, const RayTable& rays, const RangeLimits& lim
   image.range_m.reserve(rays.pixels());
 
   StripCaster caster(scene, image.rays, image.world_from_sensor, image.position_m);
+  CameraShadow shadow(scene, image.rays, image.world_from_sensor, image.position_m, baseline_m);
   for (int row = 0; row < rays.rows(); row += StripCaster::kRows) {
     const std::size_t done = image.range_m.size();
     image.range_m.resize(done + caster.pixels(row));
     const std::span<float> strip = std::span(image.range_m).subspan(done);
     caster.cast(row, strip);
+    shadow.hide(row, strip);
     if (range_noise_m > 0.0) {
       measure_noisy_ranges(limits, range_noise_m, noise, strip);
     } else {

@@ -24,7 +24,8 @@ SensorSimProcess::SensorSimProcess(Bus& bus, const run_config_t& config,
     : bus_(bus),
       config_(config),
       scene_(load_scene(config, interrupted)),
-      rays_(make_ray_table(sensor_of(config))) {
+      rays_(make_ray_table(sensor_of(config))),
+      baseline_m_(baseline_m_of(sensor_of(config))) {
   bus_.on<arrival_t>([this](const arrival_t& arrival) {
     if (arrival.arrived == 0) return;
     arrivals_.emplace(key_of(arrival), arrival);
@@ -41,8 +42,8 @@ bool SensorSimProcess::step() {
                         arrival.true_tilt_rad};
   const auto start = std::chrono::steady_clock::now();
   RandomStream noise(config_.seed, arrival.view, arrival.attempt, RandomPurpose::RangeNoise);
-  RangeImage image =
-      scan(scene_, rays_, range_limits_of(config_), pose, config_.sensor.range_noise_m, noise);
+  RangeImage image = scan(scene_, rays_, range_limits_of(config_), pose,
+                          config_.sensor.range_noise_m, noise, baseline_m_);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
 
   // What is seen is seen from where the sensor is, and placed where it takes itself to be.

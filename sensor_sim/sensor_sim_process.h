@@ -28,6 +28,7 @@ class SensorSimProcess : public BusProcess {
   run_config_t config_;
   Scene scene_;
   RayTable rays_;
+  double baseline_m_;                         ///< of a line striper
   std::map<MessageKey, arrival_t> arrivals_;  // all of them
   std::deque<MessageKey> to_scan_;            // of arrivals_
   int latest_view_ = 0;                       // scanned

@@ -35,10 +35,11 @@ RayBundle rays_of_face(int face, double reach) {
   return bundle;
 }
 
-// What a sensor sees by eq. 5, half a pixel beyond its outermost rays.
+// What a sensor sees, half a pixel beyond its outermost rays.
 class Aperture {
  public:
-  explicit Aperture(const RayTable& rays) {
+  explicit Aperture(const RayTable& rays)
+      : lines_from_sensor_(sensor_from_lines(rays.kind).transpose()) {
     const auto range = [](const std::vector<double>& sines, const std::vector<double>& cosines) {
       double min = std::atan2(sines.back(), cosines.back());
       double max = std::atan2(sines.front(), cosines.front());
@@ -50,20 +51,33 @@ class Aperture {
     const auto [row_min, row_max] = range(rays.row_sin, rays.row_cos);
     sin_min_ = std::sin(column_min);
     sin_max_ = std::sin(column_max);
+    rows_in_front_ = std::max(-row_min, row_max) < std::numbers::pi / 2.0;
     tan_min_ = std::tan(row_min);
     tan_max_ = std::tan(row_max);
+    row_min_ = row_min;
+    row_max_ = row_max;
   }
 
-  // A unit vector of the sensor frame; -x is the sine of its column, z / y the tangent of its row.
+  // A unit vector of the sensor frame. In the line frame -x is the sine of its column's angle, and
+  // the angle of its row is that of y and z.
   bool contains(const Eigen::Vector3d& direction) const {
-    const double y = direction.y();
-    return y > 0.0 && -direction.x() >= sin_min_ && -direction.x() <= sin_max_ &&
-           direction.z() >= tan_min_ * y && direction.z() <= tan_max_ * y;
+    const Eigen::Vector3d n = lines_from_sensor_ * direction;
+    return -n.x() >= sin_min_ && -n.x() <= sin_max_ && is_in_rows(n.y(), n.z());
   }
 
  private:
+  bool is_in_rows(double y, double z) const {
+    if (rows_in_front_) return y > 0.0 && z >= tan_min_ * y && z <= tan_max_ * y;
+    constexpr double kRounding = 1e-9;  // where the rows of a whole turn meet
+    const double angle = std::atan2(z, y);
+    return angle >= row_min_ - kRounding && angle <= row_max_ + kRounding;
+  }
+
+  Eigen::Matrix3d lines_from_sensor_;
   double sin_min_, sin_max_;
+  bool rows_in_front_;  // all of them, so that tangents tell them apart
   double tan_min_, tan_max_;
+  double row_min_, row_max_;
 };
 
 }  // namespace

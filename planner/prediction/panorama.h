@@ -68,8 +68,8 @@ class Panorama {
 /// is one difference.
 class PanoramaViews {
  public:
-  /// Whose views: a tilted line scan's (eq. 5), which sees what lies between its first and its last
-  /// column and row, and half a pixel beyond. Its apertures are below 180 degrees.
+  /// Whose views: a sensor's, which sees what lies between its first and its last column and row,
+  /// and half a pixel beyond.
   PanoramaViews(const RayTable& rays, std::span<const Orientation> orientations);
 
   std::size_t size() const { return begins_.size() - 1; }

@@ -9,11 +9,11 @@
 
 namespace nextview {
 
-PredictionRaster prediction_raster(const TiltedLineScan& sensor, const RangeLimits& limits) {
-  TiltedLineScan raster = sensor;
-  raster.columns = std::min(sensor.columns, 64);
-  raster.rows = std::min(sensor.rows, 32);
-  return {make_ray_table(raster), limits.max_m};
+PredictionRaster prediction_raster(const SensorGeometry& sensor, const RangeLimits& limits,
+                                   const PredictionRays& at_most) {
+  return {make_ray_table(with_raster(sensor, std::min(columns_of(sensor), at_most.columns),
+                                     std::min(rows_of(sensor), at_most.rows))),
+          limits.max_m};
 }
 
 double prediction_reach(const PredictionRaster& raster, double voxel_size_m) {

@@ -19,9 +19,16 @@ struct PredictionRaster {
   double range_max_m = 30.0;  ///< a ray is open when it meets only Empty up to this distance
 };
 
-/// The sensor's own rays, or with a larger sensor 64 x 32 of them at most, spread evenly over the
-/// same apertures (P5).
-PredictionRaster prediction_raster(const TiltedLineScan& sensor, const RangeLimits& limits);
+/// How many rays a view is predicted with at most, of the sensor's picture (P5).
+struct PredictionRays {
+  int columns = 64;
+  int rows = 32;
+};
+
+/// The sensor's own rays, or with a larger sensor as many of them as is said, spread evenly over
+/// the same apertures.
+PredictionRaster prediction_raster(const SensorGeometry& sensor, const RangeLimits& limits,
+                                   const PredictionRays& at_most = {});
 
 /// How far a ray of the raster goes, in voxels: its range, at least 1 and at most
 /// IntegerLine::kMaxSteps.

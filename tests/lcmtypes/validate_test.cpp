@@ -95,7 +95,8 @@ TEST(Validate, Arrival) {
 TEST(Validate, RangeImage) {
   expect_all_refused<range_image_t>({
       {"view 0", [](range_image_t& m) { m.view = 0; }},
-      {"unknown geometry", [](range_image_t& m) { m.geometry = 1; }},
+      {"unknown geometry", [](range_image_t& m) { m.geometry = 3; }},
+      {"geometry below 0", [](range_image_t& m) { m.geometry = -1; }},
       {"one column", [](range_image_t& m) { m.columns = 1; }},
       {"rows without end", [](range_image_t& m) { m.rows = 1 << 20; }},
       {"more entries than the raster", [](range_image_t& m) { m.first_entry = 1; }},
@@ -267,7 +268,29 @@ TEST(Validate, RunConfig) {
       {"tilted over", [](run_config_t& m) { m.base.start_tilt_rad = 2.0; }},
       {"no columns", [](run_config_t& m) { m.sensor.columns = 0; }},
       {"huge rows", [](run_config_t& m) { m.sensor.rows = 1 << 20; }},
-      {"a sensor of another geometry", [](run_config_t& m) { m.sensor.geometry = 1; }},
+      {"a sensor of another geometry", [](run_config_t& m) { m.sensor.geometry = 3; }},
+      {"a sensor of geometry -1", [](run_config_t& m) { m.sensor.geometry = -1; }},
+      {"a parameter a spherical scanner has no use for",
+       [](run_config_t& m) {
+         m.sensor.geometry = 1;
+         m.sensor.geometry_parameter[2] = 0.1;
+       }},
+      {"more than a whole turn",
+       [](run_config_t& m) {
+         m.sensor.geometry = 1;
+         m.sensor.geometry_parameter[0] = 6.3;
+       }},
+      {"a line striper's negative baseline",
+       [](run_config_t& m) {
+         m.sensor.geometry = 2;
+         m.sensor.geometry_parameter[2] = -0.1;
+       }},
+      {"NaN aperture", [](run_config_t& m) { m.sensor.geometry_parameter[0] = kNan; }},
+      {"more rays than a view is predicted with",
+       [](run_config_t& m) {
+         m.planner.prediction_columns = 1024;
+         m.planner.prediction_rows = 32;
+       }},
       {"a parameter the geometry has no use for",
        [](run_config_t& m) { m.sensor.geometry_parameter[2] = 0.1; }},
       {"aperture of a half turn", [](run_config_t& m) { m.sensor.geometry_parameter[1] = 3.2; }},
@@ -316,6 +339,26 @@ TEST(Validate, RunConfig) {
       {"no file", [](run_config_t& m) { m.scene_file.clear(); }},
       {"no digest", [](run_config_t& m) { m.scene_digest.clear(); }},
   });
+}
+
+TEST(Validate, EverySensorThereIs) {
+  run_config_t config = example<run_config_t>();
+  config.sensor.geometry = 1;
+  config.sensor.geometry_parameter[0] = 2.0 * std::numbers::pi;
+  EXPECT_EQ(check(config), "");
+  config.sensor.geometry = 2;
+  EXPECT_NE(check(config), "") << "a sweep of a whole turn";
+  config.sensor.geometry_parameter[0] = 1.0;
+  config.sensor.geometry_parameter[2] = 0.1;
+  EXPECT_EQ(check(config), "");
+  config.planner.prediction_columns = 64;
+  config.planner.prediction_rows = 32;
+  EXPECT_EQ(check(config), "");
+  range_image_t image = example<range_image_t>();
+  for (const int geometry : {0, 1, 2}) {
+    image.geometry = static_cast<std::int8_t>(geometry);
+    EXPECT_EQ(check(image), "");
+  }
 }
 
 TEST(Validate, WhatTheSurfaceStrategyReads) {

@@ -61,9 +61,26 @@ Case random_case(RandomStream& random) {
   return c;
 }
 
+SensorGeometry random_sensor(RandomStream& random) {
+  const int columns = uniform_int(random, 2, 24);
+  const int rows = uniform_int(random, 2, 16);
+  switch (random.below(4)) {
+    case 0: {
+      const double turn = 2.0 * std::numbers::pi;
+      return SphericalScanner{columns, rows,
+                              random.below(2) == 0 ? turn : uniform(random, 0.1, turn),
+                              uniform(random, 0.02, 3.0)};
+    }
+    case 1:
+      return LineStriper{columns, rows, uniform(random, 0.02, 3.0), uniform(random, 0.02, 3.0),
+                         0.0};
+    default:
+      return TiltedLineScan::with_aperture(columns, rows, uniform(random, 0.02, 1.5));
+  }
+}
+
 RangeImage random_view(const Case& c, RandomStream& random) {
-  const TiltedLineScan sensor = TiltedLineScan::with_aperture(
-      uniform_int(random, 2, 24), uniform_int(random, 2, 16), uniform(random, 0.02, 1.5));
+  const SensorGeometry sensor = random_sensor(random);
   SensorPose pose;
   for (int axis = 0; axis < 3; ++axis) {
     pose.position_m[axis] = uniform(random, c.corner_m(0)[axis], c.corner_m(1)[axis]);

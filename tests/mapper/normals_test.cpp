@@ -70,6 +70,10 @@ RayTable sensor_of(int which) {
       return make_ray_table(TiltedLineScan::with_aperture(200, 90, std::numbers::pi / 3));
     case 3:
       return make_ray_table(TiltedLineScan::with_aperture(90, 45, 1.3));
+    case 4:
+      return make_ray_table(SphericalScanner{240, 70, 2.0 * std::numbers::pi, 100.0 * kDegree});
+    case 5:
+      return make_ray_table(LineStriper{100, 90, 1.0, 0.8, 0.0});
     default:
       return make_ray_table(TiltedLineScan::with_aperture(512, 256, std::numbers::pi / 3));
   }
@@ -94,7 +98,7 @@ TEST(Normals, AreRightToTwoDegreesOnEveryPixelOfAPlane) {
   NormalErrors errors;
   for (int n = 0; n < 250; ++n) {
     RandomStream random(n, 1, 1, RandomPurpose::RangeNoise);
-    const RayTable rays = sensor_of(n % 25 == 0 ? 4 : n % 4);
+    const RayTable rays = sensor_of(n % 25 == 0 ? 6 : n % 6);
     const SensorPose pose = random_pose(random);
     const Eigen::Vector3d normal = random_direction(random);
     // So that the nearest pixels are at about 0.4 m and the farthest at 10 m.
@@ -218,7 +222,7 @@ TEST(Normals, AreRightToTwoDegreesUpToTheCreasesOfARoom) {
                        uniform(random, 0.6, 2.4)};
     AnalyticWorld world;
     world.boxes.push_back({Eigen::Vector3d::Zero(), {4.0, 3.0, 3.0}});
-    judge_edges(world, scan_world(world, sensor_of(n % 25 == 0 ? 4 : n % 4), {0.4, 10.0}, pose),
+    judge_edges(world, scan_world(world, sensor_of(n % 25 == 0 ? 6 : n % 6), {0.4, 10.0}, pose),
                 errors);
   }
   EXPECT_EQ(errors.wrong_judgeable, 0);
@@ -241,7 +245,7 @@ TEST(Normals, AreRightToTwoDegreesUpToTheEdgesOfABox) {
     const Eigen::Vector3d corner =
         pose.position_m + uniform(random, 0.8, 1.0) * view - Eigen::Vector3d::Constant(0.2);
     world.boxes.push_back({corner, corner + Eigen::Vector3d::Constant(0.4)});
-    judge_edges(world, scan_world(world, sensor_of(n % 25 == 0 ? 4 : n % 4), {0.4, 10.0}, pose),
+    judge_edges(world, scan_world(world, sensor_of(n % 25 == 0 ? 6 : n % 6), {0.4, 10.0}, pose),
                 errors);
   }
   EXPECT_LE(errors.wrong_judgeable, errors.judgeable / 1'000'000);

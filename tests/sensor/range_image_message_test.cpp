@@ -64,6 +64,47 @@ TEST(RangeImageMessage, ComesOutAsItWentInWhateverTheOrderOfItsParts) {
   }
 }
 
+// A quarter of a million points, of sensors whose lines stand upright.
+TEST(RangeImageMessage, CarriesThePictureOfEverySensor) {
+  const SensorGeometry sensors[] = {SphericalScanner{}, LineStriper{500, 500, 1.0, 0.8, 0.1}};
+  for (const SensorGeometry& sensor : sensors) {
+    RangeImage image = make_image(2, 2);
+    image.rays = make_ray_table(sensor);
+    const auto lines = static_cast<std::size_t>(image.rays.columns());
+    image.range_m.clear();
+    for (std::size_t i = 0; i < image.rays.pixels(); ++i) {
+      image.range_m.push_back(quantise_range(0.1 + 1e-4 * static_cast<double>(i % 200000)));
+    }
+    const auto messages = range_image_messages(image, 1, 1, 0);
+    EXPECT_EQ(messages.size(), 21u);
+    RangeImageAssembler assembler;
+    std::optional<ReceivedRangeImage> received;
+    for (const range_image_t& message : messages) {
+      EXPECT_EQ(check(message), "");
+      EXPECT_EQ(message.geometry, static_cast<int>(kind_of(sensor)));
+      EXPECT_EQ(message.columns, columns_of(sensor));
+      EXPECT_EQ(message.rows, rows_of(sensor));
+      received = assembler.add(message);
+    }
+    ASSERT_TRUE(received);
+    EXPECT_EQ(received->image.rays.kind, kind_of(sensor));
+    EXPECT_EQ(received->image.rays.column_sin, image.rays.column_sin);
+    EXPECT_EQ(received->image.rays.row_cos, image.rays.row_cos);
+    EXPECT_TRUE(same_bits(received->image.range_m, image.range_m));
+
+    // The first pixels are the top row of the picture, and their rays what the type says.
+    const range_image_t& first = messages[0];
+    ASSERT_EQ(first.entries, first.columns + first.rows);
+    const auto top = static_cast<std::size_t>(first.columns);
+    for (std::size_t u = 0; u < 9; ++u) {
+      EXPECT_EQ(first.range_m[u], image.range_m[u * lines]);
+      const Eigen::Vector3d ray(-first.entry_sin[u] * first.entry_cos[top],
+                                first.entry_cos[u] * first.entry_cos[top], first.entry_sin[top]);
+      EXPECT_LT((ray - image.rays.ray(0, static_cast<int>(u))).norm(), 1e-15);
+    }
+  }
+}
+
 TEST(RangeImageMessage, KeepsImagesApart) {
   const RangeImage image = make_image(512, 256);
   const auto first = range_image_messages(image, 1, 1, 0);
