@@ -4,6 +4,8 @@
 #include <map>
 #include <stdexcept>
 
+#include "report/base64.h"
+
 namespace nextview::foxglove {
 namespace {
 
@@ -209,23 +211,6 @@ std::string schema_of_numbers(const std::string& name, const std::vector<std::st
   Json properties = {{"timestamp", time_schema()}};
   for (const std::string& member : members) properties[member] = kNumber;
   return object(name, properties).dump();
-}
-
-std::string base64(std::span<const unsigned char> bytes) {
-  static constexpr char kDigits[] =
-      "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-  std::string text;
-  text.reserve((bytes.size() + 2) / 3 * 4);
-  for (std::size_t i = 0; i < bytes.size(); i += 3) {
-    std::uint32_t three = 0;
-    for (std::size_t k = 0; k < 3; ++k) {
-      three = three << 8 | (i + k < bytes.size() ? bytes[i + k] : 0U);
-    }
-    for (std::size_t k = 0; k < 4; ++k) {
-      text += i + k <= bytes.size() ? kDigits[three >> (18 - 6 * k) & 63U] : '=';
-    }
-  }
-  return text;
 }
 
 }  // namespace nextview::foxglove

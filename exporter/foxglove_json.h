@@ -42,7 +42,4 @@ std::string schema(const std::string& name);
 /// The JSON schema of a flat message of numbers.
 std::string schema_of_numbers(const std::string& name, const std::vector<std::string>& members);
 
-/// Base 64 (RFC 4648), as JSON carries bytes.
-std::string base64(std::span<const unsigned char> bytes);
-
 }  // namespace nextview::foxglove

@@ -209,12 +209,33 @@ Picture recovered_picture(const VoxelMap& map, std::span<const SensorPose> poses
   return draw(scene, painting.colours, camera, view);
 }
 
-void write_png(const Picture& picture, const std::filesystem::path& file) {
+namespace {
+
+png_image png_header(const Picture& picture) {
   png_image image{};
   image.version = PNG_IMAGE_VERSION;
   image.width = static_cast<png_uint_32>(picture.width);
   image.height = static_cast<png_uint_32>(picture.height);
   image.format = PNG_FORMAT_RGB;
+  return image;
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> png_bytes(const Picture& picture) {
+  png_image image = png_header(picture);
+  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
+  std::vector<std::uint8_t> bytes(size);
+  if (png_image_write_to_memory(&image, bytes.data(), &size, 0, picture.rgb.data(), 0, nullptr) ==
+      0) {
+    throw std::runtime_error(std::string("the picture cannot be encoded: ") + image.message);
+  }
+  bytes.resize(size);
+  return bytes;
+}
+
+void write_png(const Picture& picture, const std::filesystem::path& file) {
+  png_image image = png_header(picture);
   if (png_image_write_to_file(&image, file.c_str(), 0, picture.rgb.data(), 0, nullptr) == 0) {
     throw std::runtime_error(file.string() + ": the picture cannot be written: " + image.message);
   }

@@ -34,6 +34,9 @@ struct Picture {
 Picture recovered_picture(const VoxelMap& map, std::span<const SensorPose> poses,
                           const PictureView& view);
 
+/// The picture as the bytes of a PNG file.
+std::vector<std::uint8_t> png_bytes(const Picture& picture);
+
 /// @throws std::runtime_error naming the file when it cannot be written
 void write_png(const Picture& picture, const std::filesystem::path& file);
 

@@ -149,18 +149,6 @@ TEST(Mcap, RefusesMessagesOutOfOrder) {
   EXPECT_THROW(writer.write(9, 3, "{}"), std::out_of_range);
 }
 
-TEST(Foxglove, Base64IsThatOfTheRfc) {
-  const auto encoded = [](const std::string& text) {
-    return foxglove::base64({reinterpret_cast<const unsigned char*>(text.data()), text.size()});
-  };
-  EXPECT_EQ(encoded(""), "");
-  EXPECT_EQ(encoded("f"), "Zg==");
-  EXPECT_EQ(encoded("fo"), "Zm8=");
-  EXPECT_EQ(encoded("foo"), "Zm9v");
-  EXPECT_EQ(encoded("foobar"), "Zm9vYmFy");
-  EXPECT_EQ(encoded("\xff\xfe\xfd"), "//79");
-}
-
 TEST(Foxglove, HasNoSchemaOfAnUnknownName) {
   EXPECT_THROW(foxglove::schema("foxglove.NoSuchThing"), std::invalid_argument);
 }

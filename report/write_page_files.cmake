@@ -1,0 +1,11 @@
+# Writes OUTPUT, a header with the files of the page in FOLDER as strings.
+set(text "// Made from report/page.\n#pragma once\n\n#include <string_view>\n\nnamespace nextview {\n")
+foreach(file style:kPageStyle:report.css body:kPageBody:report.html script:kPageScript:report.js)
+  string(REPLACE ":" ";" parts ${file})
+  list(GET parts 1 name)
+  list(GET parts 2 path)
+  file(READ ${FOLDER}/${path} content)
+  string(APPEND text "inline constexpr std::string_view ${name} = R\"nextview(${content})nextview\";\n")
+endforeach()
+string(APPEND text "}  // namespace nextview\n")
+file(WRITE ${OUTPUT} "${text}")
