@@ -11,6 +11,7 @@
 
 #include "base_sim/base.h"
 #include "lcmtypes/ask_timer.h"
+#include "mapper/mapper_config.h"
 #include "runner/run_signals.h"
 #include "scoring/kept_file.h"
 #include "scoring/visible_surface.h"
@@ -139,7 +140,7 @@ void Run::start_up() {
   record_.add(setup_.config);
   bus_->publish(setup_.config);
   last_progress_ = Clock::now();
-  if (setup_.scene && !options_.no_coverage) start_scoring();
+  if (setup_.scene) start_scoring();
   // Each says so when it has loaded what it needs; only then is there somebody to hear a goal.
   pump_until([&] { return all_of(answering, fresh_statuses_); });
   processes_->start_planner();
@@ -155,12 +156,17 @@ bool Run::recording() {
 }
 
 void Run::start_scoring() {
+  std::promise<NearSurface> near;
   std::promise<VisibleSurface> promise;
-  visible_coming_ = promise.get_future();
+  near_coming_ = near.get_future();
+  if (!options_.no_coverage) visible_coming_ = promise.get_future();
   scoring_ = std::jthread([scene = setup_.scene, config = setup_.config,
                            cache = cache_folder(options_.cache), progress = scoring_progress_,
+                           coverage = !options_.no_coverage, near = std::move(near),
                            promise = std::move(promise)](const std::stop_token& stop) mutable {
     give_way();
+    near.set_value(NearSurface(scene->mesh(), grid_of(config), window_of(config), stop));
+    if (!coverage) return;
     try {
       promise.set_value(kept_visible_surface(cache, *scene, std::string(config.scene_digest),
                                              start_pose_of(config).position_m,
@@ -192,6 +198,10 @@ void Run::watch() {
 }
 
 void Run::make_rows() {
+  if (near_coming_.valid() && near_coming_.wait_for(milliseconds(0)) == std::future_status::ready) {
+    rows_.set_near(near_coming_.get());
+    near_known_ = true;
+  }
   if (!visible_ && visible_coming_.valid() &&
       visible_coming_.wait_for(milliseconds(0)) == std::future_status::ready) {
     try {
@@ -327,8 +337,13 @@ FinishedRun Run::finish(Clock::time_point program_start) {
   getrusage(RUSAGE_SELF, &usage);
   run.peak_memory_bytes["run"] = std::int64_t{usage.ru_maxrss} * 1024;
   AskTimer patience = reminder_after(milliseconds(1000));
-  while (visible_coming_.valid() && noted_signal() == 0 && !ended_early_) {
-    visible_coming_.wait_for(milliseconds(50));
+  while ((near_coming_.valid() || visible_coming_.valid()) && noted_signal() == 0 &&
+         !ended_early_) {
+    if (near_coming_.valid()) {
+      near_coming_.wait_for(milliseconds(50));
+    } else {
+      visible_coming_.wait_for(milliseconds(50));
+    }
     make_rows();
     if (visible_coming_.valid() && patience.due()) {
       const std::int64_t of = std::max<std::int64_t>(1, scoring_progress_->of);
@@ -347,6 +362,19 @@ FinishedRun Run::finish(Clock::time_point program_start) {
   if (!setup_.scene) run.coverage_unknown = "there is no CAD model to hold the map against";
   if (!visible_ && run.coverage_unknown.empty()) {
     run.coverage_unknown = "the run ended before it was worked out";
+  }
+  if (!setup_.scene) {
+    run.precision_unknown = "there is no CAD model to hold the map against";
+  } else if (!near_known_) {
+    run.precision_unknown = "the run ended before it was worked out";
+  } else if (run.rows.empty() || !run.rows.back().surface_precision) {
+    run.precision_unknown = "nothing is Occupied";
+  }
+  if (setup_.scene) {
+    run.bounds = kept_view_bounds(cache_folder(options_.cache), setup_.config.scene_digest,
+                                  bound_question_of(options_, setup_.config))
+                     .value_or(std::vector<ViewBound>());
+    run.bound_command = options_.bound_command;
   }
   run.statuses = statuses_;
   run.lcm_url = lcm_url_;

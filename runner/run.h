@@ -90,6 +90,8 @@ class Run {
   std::optional<Clock::time_point> last_commit_;
   std::optional<EndsEarly> ended_early_;
 
+  std::future<NearSurface> near_coming_;
+  bool near_known_ = false;
   std::future<VisibleSurface> visible_coming_;
   std::optional<VisibleSurface> visible_;
   std::string coverage_unknown_;  ///< why, when it cannot be worked out
