@@ -18,5 +18,5 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME nextview-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
     "libeigen3-dev, libfmt-dev, libhwy-dev, libxxhash-dev, pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS
-    "liblcm-dev, libglib2.0-dev, libcli11-dev, libassimp-dev, libembree-dev, nlohmann-json3-dev, coinor-libclp-dev, libpng-dev")
+    "liblcm-dev, libglib2.0-dev, libcli11-dev, libassimp-dev, libembree-dev, nlohmann-json3-dev, coinor-libclp-dev, libcairo2-dev")
 include(CPack)

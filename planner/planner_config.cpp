@@ -12,7 +12,6 @@
 #include "sensor/sensor_config.h"
 
 namespace nextview {
-namespace {
 
 FeasibilityParameters feasibility_of(const run_config_t& config) {
   return {.clearance_m = config.planner.clearance_m,
@@ -23,6 +22,8 @@ FeasibilityParameters feasibility_of(const run_config_t& config) {
           .lift_min_m = config.base.lift_min_m,
           .lift_max_m = config.base.lift_max_m};
 }
+
+namespace {
 
 PlannerParameters planner_parameters_of(const run_config_t& config) {
   PlannerParameters parameters;

@@ -3,9 +3,13 @@
 #include <memory>
 
 #include "lcmtypes/channels.h"
+#include "planner/feasibility.h"
 #include "planner/view_planner.h"
 
 namespace nextview {
+
+/// Where the robot of a run may be.
+FeasibilityParameters feasibility_of(const run_config_t& config);
 
 /// The planner of a run, with the run's strategy.
 /// @throws std::invalid_argument for parameters that cannot be

@@ -13,8 +13,7 @@ namespace nextview {
 
 namespace {
 
-// From the worst place to look from to the best.
-enum class Place { Nowhere, TooNear, NoPath, BeyondLift, Refused, InView };
+using Place = UnseenFrom;
 
 Place place_of(const ClearSpace& space, const ShortestPaths& paths, const VoxelIndex& voxel) {
   const ClearSpace::Cell cell = space.cell(voxel);
@@ -54,15 +53,15 @@ Place best_place(const VoxelMap& map, const ClearSpace& space, const ShortestPat
 
 }  // namespace
 
-UnseenBoundary unseen_boundary(const VoxelMap& map, const ClearSpace& space,
-                               const ShortestPaths& paths, double range_m) {
+std::vector<UnseenVoxel> unseen_voxels(const VoxelMap& map, const ClearSpace& space,
+                                       const ShortestPaths& paths, double range_m) {
   const double voxel_m = map.grid().voxel_size_m;
   const double reach = std::clamp(range_m / voxel_m, 1.0, double{IntegerLine::kMaxSteps});
   std::vector<IntegerLine> lines;
   for (const Orientation& orientation : icosahedron_orientations(1)) {
     lines.push_back(line_along(VoxelIndex::Zero(), orientation.direction, reach));
   }
-  std::array<double, 6> area_m2 = {};
+  std::vector<UnseenVoxel> unseen;
   const VoxelIndex end = map.window().min + map.window().size;
   for (int k = map.window().min[2]; k < end[2]; ++k) {
     for (int j = map.window().min[1]; j < end[1]; ++j) {
@@ -72,10 +71,19 @@ UnseenBoundary unseen_boundary(const VoxelMap& map, const ClearSpace& space,
         if (label == Label::Empty || label == Label::Occupied) continue;
         const int faces = empty_faces(map, voxel);
         if (faces == 0) continue;
-        const Place place = best_place(map, space, paths, voxel, lines);
-        area_m2[static_cast<std::size_t>(place)] += faces * voxel_m * voxel_m;
+        unseen.push_back({voxel, faces, best_place(map, space, paths, voxel, lines)});
       }
     }
+  }
+  return unseen;
+}
+
+UnseenBoundary unseen_boundary(const VoxelMap& map, const ClearSpace& space,
+                               const ShortestPaths& paths, double range_m) {
+  const double voxel_m = map.grid().voxel_size_m;
+  std::array<double, kUnseenFromCount> area_m2 = {};
+  for (const UnseenVoxel& unseen : unseen_voxels(map, space, paths, range_m)) {
+    area_m2[static_cast<std::size_t>(unseen.from)] += unseen.empty_faces * voxel_m * voxel_m;
   }
   const auto of = [&](Place place) { return area_m2[static_cast<std::size_t>(place)]; };
   return {.in_view_m2 = of(Place::InView),

@@ -1,12 +1,28 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "mapper/voxel_map.h"
 #include "planner/clear_space.h"
 #include "planner/shortest_paths.h"
 
 namespace nextview {
+
+/// The best place an unknown voxel could be looked at from, as far as is known; the worst first.
+enum class UnseenFrom { Nowhere, TooNear, NoPath, BeyondLift, Refused, InView };
+constexpr int kUnseenFromCount = 6;
+
+/// An unknown voxel that touches Empty ones.
+struct UnseenVoxel {
+  VoxelIndex voxel;
+  int empty_faces = 0;  ///< of its six
+  UnseenFrom from = UnseenFrom::Nowhere;
+};
+
+/// All of them, x fastest. Each is looked for along 80 directions up to a range.
+std::vector<UnseenVoxel> unseen_voxels(const VoxelMap& map, const ClearSpace& space,
+                                       const ShortestPaths& paths, double range_m);
 
 /// What is left unseen, and why: the area of the faces between Empty and unknown voxels, by the
 /// best place it could be looked at from, as far as is known. Each face is in one of them.
@@ -24,8 +40,7 @@ struct UnseenBoundary {
   }
 };
 
-/// Looks for it from every unknown voxel that touches an Empty one, along 80 directions up to a
-/// range.
+/// The areas of unseen_voxels().
 UnseenBoundary unseen_boundary(const VoxelMap& map, const ClearSpace& space,
                                const ShortestPaths& paths, double range_m);
 

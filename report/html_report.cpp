@@ -10,7 +10,7 @@
 #include "mapper/mapper_config.h"
 #include "report/base64.h"
 #include "report/page_files.h"
-#include "report/recovered_picture.h"
+#include "report/picture_file.h"
 
 namespace nextview {
 namespace {
@@ -225,7 +225,7 @@ std::string picture_of(const RecoveredRun& run) {
   PictureView view;
   view.width = 960;
   view.height = 600;
-  return base64(png_bytes(recovered_picture(run.builder.map(), poses, view)));
+  return base64(png_bytes(recovered_picture(run.builder.map(), {poses, {}, {}}, view), {}));
 }
 
 std::string name_of(const std::filesystem::path& folder_or_log) {

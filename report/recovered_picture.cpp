@@ -1,12 +1,14 @@
 #include "report/recovered_picture.h"
 
-#include <png.h>
+#include <fmt/format.h>
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <numbers>
 #include <stdexcept>
 #include <string>
+#include <unordered_set>
 
 #include "scene/scene.h"
 
@@ -51,11 +53,31 @@ struct Painting {
   }
 };
 
+const Colour kPath(0.95F, 0.45F, 0.10F);
+const Colour kPose(0.40F, 0.04F, 0.10F);
+const Colour kCanBeSeen(1.00F, 0.00F, 0.00F);
+const Colour kNeverVisible(0.72F, 0.72F, 0.72F);
+
+// What remains unseen, by UnseenFrom.
+struct UnseenKind {
+  Colour colour;
+  const char* text;
+};
+const std::array<UnseenKind, kUnseenFromCount> kUnseen = {{
+    {Colour(0.25F, 0.25F, 0.28F), "from nowhere known to be empty"},
+    {Colour(0.95F, 0.55F, 0.75F), "only from too near to obstacles"},
+    {Colour(0.55F, 0.35F, 0.20F), "only from where no path leads"},
+    {Colour(0.45F, 0.30F, 0.75F), "only from beyond the lift or the workspace"},
+    {Colour(0.85F, 0.00F, 0.85F), "only from where the base refused to go"},
+    {Colour(0.10F, 0.10F, 0.95F), "from where the robot can get to, where views show too little"},
+}};
+
 // From blue at the floor over green to yellow at the ceiling.
+const std::array<Colour, 5> kScale = {Colour(0.27F, 0.37F, 0.58F), Colour(0.22F, 0.55F, 0.60F),
+                                      Colour(0.35F, 0.70F, 0.51F), Colour(0.65F, 0.80F, 0.40F),
+                                      Colour(0.93F, 0.86F, 0.45F)};
+
 Colour height_colour(double share) {
-  static const std::array<Colour, 5> kScale = {
-      Colour(0.27F, 0.37F, 0.58F), Colour(0.22F, 0.55F, 0.60F), Colour(0.35F, 0.70F, 0.51F),
-      Colour(0.65F, 0.80F, 0.40F), Colour(0.93F, 0.86F, 0.45F)};
   const double place = std::clamp(share, 0.0, 1.0) * (kScale.size() - 1.0);
   const auto below = std::min(static_cast<std::size_t>(place), kScale.size() - 2);
   const auto t = static_cast<float>(place - static_cast<double>(below));
@@ -90,46 +112,76 @@ Extent extent_of(const VoxelMap& map, const std::vector<VoxelIndex>& voxels) {
   return {map.grid().center_m(min), map.grid().center_m(max)};
 }
 
+// The faces of a voxel that touch Empty space and look at the camera.
+void paint_voxel(const VoxelMap& map, const VoxelIndex& voxel, const Eigen::Vector3d& to_camera,
+                 const Colour& colour, Painting& painting) {
+  static const std::array<float, 3> kShade = {0.78F, 0.88F, 1.0F};  // by the face's axis
+  const double side = map.grid().voxel_size_m;
+  // Slightly smaller than the face, so that the voxels can be told apart.
+  const double edge = 0.96 * side;
+  const Eigen::Vector3d center = map.grid().center_m(voxel);
+  for (int axis = 0; axis < 3; ++axis) {
+    const VoxelIndex step = (to_camera[axis] < 0.0 ? -1 : 1) * VoxelIndex::Unit(axis);
+    if (map.label(voxel + step) != Label::Empty) continue;
+    const Eigen::Vector3d u = edge * Eigen::Vector3d::Unit((axis + 1) % 3);
+    const Eigen::Vector3d v = edge * Eigen::Vector3d::Unit((axis + 2) % 3);
+    painting.add_quad(center + 0.5 * side * step.cast<double>() - 0.5 * (u + v), u, v,
+                      colour * kShade[static_cast<std::size_t>(axis)]);
+  }
+}
+
 void paint_faces(const VoxelMap& map, const std::vector<VoxelIndex>& voxels, const Extent& extent,
                  const Eigen::Vector3d& to_camera, Painting& painting) {
   const double side = map.grid().voxel_size_m;
   const double height = std::max(extent.max_m.z() - extent.min_m.z(), side);
-  static const std::array<float, 3> kShade = {0.78F, 0.88F, 1.0F};  // by the face's axis
   for (const VoxelIndex& voxel : voxels) {
+    const double above_m = map.grid().center_m(voxel).z() - extent.min_m.z();
+    paint_voxel(map, voxel, to_camera, height_colour(above_m / height), painting);
+  }
+}
+
+// By slot, which nothing iterates over.
+using Slots = std::unordered_set<std::size_t>;
+
+Slots slots_of(const VoxelMap& map, const std::vector<VoxelIndex>& voxels) {
+  Slots slots;
+  for (const VoxelIndex& voxel : voxels) slots.insert(map.slot(voxel));
+  return slots;
+}
+
+void paint_unseen(const VoxelMap& map, const DrawnRun& run, const Eigen::Vector3d& to_camera,
+                  Painting& painting) {
+  const Slots never = run.missed ? slots_of(map, run.missed->never_visible) : Slots();
+  for (const UnseenVoxel& unseen : run.unseen) {
+    const Colour& colour = never.contains(map.slot(unseen.voxel))
+                               ? kNeverVisible
+                               : kUnseen[static_cast<std::size_t>(unseen.from)].colour;
+    paint_voxel(map, unseen.voxel, to_camera, colour, painting);
+  }
+  if (!run.missed) return;
+  const double side = 1.05 * map.grid().voxel_size_m;  // around the faces of the voxel
+  for (const VoxelIndex& voxel : run.missed->can_be_seen) {
+    const Eigen::Vector3d along = side * Eigen::Vector3d::UnitX();
     const Eigen::Vector3d center = map.grid().center_m(voxel);
-    const Colour colour = height_colour((center.z() - extent.min_m.z()) / height);
-    for (int axis = 0; axis < 3; ++axis) {
-      for (const int sign : {-1, 1}) {
-        const VoxelIndex step = sign * VoxelIndex::Unit(axis);
-        if (sign * to_camera[axis] <= 0.0 || map.label(voxel + step) != Label::Empty) continue;
-        // Slightly smaller than the face, so that the voxels can be told apart.
-        const double edge = 0.96 * side;
-        const Eigen::Vector3d u = edge * Eigen::Vector3d::Unit((axis + 1) % 3);
-        const Eigen::Vector3d v = edge * Eigen::Vector3d::Unit((axis + 2) % 3);
-        painting.add_quad(center + 0.5 * side * step.cast<double>() - 0.5 * (u + v), u, v,
-                          colour * kShade[static_cast<std::size_t>(axis)]);
-      }
-    }
+    painting.add_bar(center - 0.5 * along, center + 0.5 * along, side, kCanBeSeen);
   }
 }
 
 void paint_path(std::span<const SensorPose> poses, double bar_m, Painting& painting) {
-  const Colour path(0.95F, 0.45F, 0.10F);
-  const Colour pose(0.80F, 0.08F, 0.16F);
   constexpr double kDash = 0.08;
   for (std::size_t i = 0; i < poses.size(); ++i) {
     const Eigen::Vector3d& at = poses[i].position_m;
     const Eigen::Vector3d looks = viewing_direction(poses[i].pan_rad, poses[i].tilt_rad);
     painting.add_bar(at - Eigen::Vector3d(0, 0, bar_m), at + Eigen::Vector3d(0, 0, bar_m),
-                     2.0 * bar_m, pose);
-    painting.add_bar(at, at + 0.3 * looks, bar_m, pose);
+                     2.0 * bar_m, kPose);
+    painting.add_bar(at, at + 0.3 * looks, bar_m, kPose);
     if (i == 0) continue;
     const Eigen::Vector3d from = poses[i - 1].position_m;
     const double length = (at - from).norm();
     for (double begin = 0.0; begin < length; begin += 2.0 * kDash) {
       const double end = std::min(begin + kDash, length);
       painting.add_bar(from + (at - from) * (begin / length), from + (at - from) * (end / length),
-                       0.7 * bar_m, path);
+                       0.7 * bar_m, kPath);
     }
   }
 }
@@ -192,8 +244,28 @@ Picture draw(const Scene& scene, const std::vector<Colour>& colours, const Camer
 
 }  // namespace
 
-Picture recovered_picture(const VoxelMap& map, std::span<const SensorPose> poses,
-                          const PictureView& view) {
+MissedSurface missed_surface(const VoxelMap& map, std::span<const Eigen::Vector3f> samples_m,
+                             std::span<const Eigen::Vector3f> visible_m) {
+  Slots taken;
+  const auto take_new = [&](std::span<const Eigen::Vector3f> points_m, auto take) {
+    for (const Eigen::Vector3f& point_m : points_m) {
+      const VoxelIndex voxel = map.grid().voxel_of(point_m.cast<double>());
+      if (map.contains(voxel) && taken.insert(map.slot(voxel)).second) take(voxel);
+    }
+  };
+  MissedSurface missed;
+  take_new(visible_m, [&](const VoxelIndex& voxel) {
+    if (map.label(voxel) != Label::Occupied) missed.can_be_seen.push_back(voxel);
+  });
+  take_new(samples_m, [&](const VoxelIndex& voxel) {
+    const Label label = map.label(voxel);
+    const bool known = label == Label::Occupied || label == Label::Empty;
+    if (!known) missed.never_visible.push_back(voxel);
+  });
+  return missed;
+}
+
+Picture recovered_picture(const VoxelMap& map, const DrawnRun& run, const PictureView& view) {
   const std::vector<VoxelIndex> voxels = occupied_voxels(map);
   if (voxels.empty()) throw std::invalid_argument("no voxel is Occupied: there is nothing to draw");
   const Extent extent = extent_of(map, voxels);
@@ -203,42 +275,59 @@ Picture recovered_picture(const VoxelMap& map, std::span<const SensorPose> poses
                                   std::cos(elevation) * std::sin(azimuth), std::sin(elevation));
   Painting painting;
   paint_faces(map, voxels, extent, to_camera, painting);
-  paint_path(poses, 0.25 * map.grid().voxel_size_m, painting);
+  paint_unseen(map, run, to_camera, painting);
+  paint_path(run.poses, 0.25 * map.grid().voxel_size_m, painting);
   const Camera camera = camera_for(extent, to_camera, view);
   const Scene scene(std::move(painting.mesh));
   return draw(scene, painting.colours, camera, view);
 }
 
-namespace {
-
-png_image png_header(const Picture& picture) {
-  png_image image{};
-  image.version = PNG_IMAGE_VERSION;
-  image.width = static_cast<png_uint_32>(picture.width);
-  image.height = static_cast<png_uint_32>(picture.height);
-  image.format = PNG_FORMAT_RGB;
-  return image;
-}
-
-}  // namespace
-
-std::vector<std::uint8_t> png_bytes(const Picture& picture) {
-  png_image image = png_header(picture);
-  png_alloc_size_t size = PNG_IMAGE_PNG_SIZE_MAX(image);
-  std::vector<std::uint8_t> bytes(size);
-  if (png_image_write_to_memory(&image, bytes.data(), &size, 0, picture.rgb.data(), 0, nullptr) ==
-      0) {
-    throw std::runtime_error(std::string("the picture cannot be encoded: ") + image.message);
+std::vector<LegendLine> legend_of(const VoxelMap& map, const DrawnRun& run) {
+  const auto rgb = [](const Colour& colour) {
+    return std::array<float, 3>{colour[0], colour[1], colour[2]};
+  };
+  std::vector<LegendLine> legend;
+  const auto add = [&](const Colour& from, const Colour& to, std::string text) {
+    legend.push_back({rgb(from), rgb(to), std::move(text)});
+  };
+  const auto square_metres = [&](int faces) {
+    const double area_m2 = faces * map.grid().voxel_size_m * map.grid().voxel_size_m;
+    return fmt::format("{:.2f} m\u00b2 ", area_m2);
+  };
+  add(kScale.front(), kScale.back(),
+      "recovered surface (Occupied voxels), from the floor to the ceiling; drawn where it faces "
+      "space known to be empty and the viewer");
+  add(kPath, kPath, "dashes: the straight pieces from view to view");
+  add(kPose, kPose, "marks: the poses of the sensor; the bar points to where it looked");
+  const Slots never = run.missed ? slots_of(map, run.missed->never_visible) : Slots();
+  std::array<int, kUnseenFromCount> faces = {};
+  int never_faces = 0;
+  for (const UnseenVoxel& unseen : run.unseen) {
+    const bool never_visible = never.contains(map.slot(unseen.voxel));
+    (never_visible ? never_faces : faces[static_cast<std::size_t>(unseen.from)]) +=
+        unseen.empty_faces;
   }
-  bytes.resize(size);
-  return bytes;
-}
-
-void write_png(const Picture& picture, const std::filesystem::path& file) {
-  png_image image = png_header(picture);
-  if (png_image_write_to_file(&image, file.c_str(), 0, picture.rgb.data(), 0, nullptr) == 0) {
-    throw std::runtime_error(file.string() + ": the picture cannot be written: " + image.message);
+  for (std::size_t i = faces.size(); i-- > 0;) {
+    if (faces[i] == 0) continue;
+    add(kUnseen[i].colour, kUnseen[i].colour,
+        square_metres(faces[i]) + "unseen at the end, and to be seen " + kUnseen[i].text);
   }
+  if (run.missed) {
+    if (never_faces > 0) {
+      add(kNeverVisible, kNeverVisible,
+          square_metres(never_faces) +
+              "never visible: unseen, and the surface there is seen from nowhere reachable");
+    }
+    add(kCanBeSeen, kCanBeSeen,
+        "cubes: " + std::to_string(run.missed->can_be_seen.size()) +
+            " voxels with surface that can be seen from somewhere reachable and is not recovered");
+  } else {
+    add(Colour::Ones(), Colour::Ones(),
+        "what is never visible is not told from what is unseen: no surface coverage is kept");
+  }
+  add(Colour::Ones(), Colour::Ones(),
+      "white gaps: no space known to be empty lies there, or only behind the back of a surface");
+  return legend;
 }
 
 }  // namespace nextview

@@ -4,6 +4,7 @@
 #include <fmt/ostream.h>
 
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
 
@@ -35,9 +36,12 @@ double median_s(const FinishedRun& run, const Stage& stage) {
   return median(values);
 }
 
-double path_length_m(const FinishedRun& run) {
+/// Of the way up to a view, or of all.
+double path_length_m(const FinishedRun& run, int last_view = std::numeric_limits<int>::max()) {
   double length_m = 0.0;
-  for (const ViewRow& row : run.rows) length_m += row.arrival.path_length_m;
+  for (const ViewRow& row : run.rows) {
+    if (row.view <= last_view) length_m += row.arrival.path_length_m;
+  }
   return length_m;
 }
 
@@ -73,8 +77,55 @@ double factor_of(const goal_t& goal, std::string_view name) {
   return goal.factor_value[static_cast<std::size_t>(found - names.begin())];
 }
 
-std::string coverage_text(const ViewRow& row) {
-  return row.surface_coverage ? fmt::format("{:.6f}", *row.surface_coverage) : std::string();
+/// A share, or a blank where it is not known.
+std::string share_text(const std::optional<double>& share) {
+  return share ? fmt::format("{:.6f}", *share) : std::string();
+}
+
+/// The first view after which a share of surface coverage is reached; nothing when none is.
+const ViewRow* first_with(const FinishedRun& run, double share) {
+  const auto found = std::find_if(run.rows.begin(), run.rows.end(), [share](const ViewRow& row) {
+    return row.surface_coverage && *row.surface_coverage >= share;
+  });
+  return found == run.rows.end() ? nullptr : &*found;
+}
+
+nlohmann::ordered_json bounds_json(const FinishedRun& run) {
+  nlohmann::ordered_json all = nlohmann::ordered_json::array();
+  for (const ViewBound& bound : run.bounds) {
+    nlohmann::ordered_json& json = all.emplace_back();
+    json["surface_coverage"] = bound.share;
+    const ViewRow* row = first_with(run, bound.share);
+    json["views"] = row ? nlohmann::ordered_json(row->view) : nullptr;
+    json["path_length_m"] = row ? nlohmann::ordered_json(path_length_m(run, row->view)) : nullptr;
+    json["can_be_reached"] = bound.reached;
+    if (!bound.reached) continue;
+    json["greedy_views"] = bound.greedy_views;
+    json["greedy_path_length_m"] = bound.greedy_m;
+    json["least_views"] = bound.fewest_views;
+    json["least_path_length_m"] = bound.shortest_m;
+  }
+  return all;
+}
+
+/// The run against the bound for 95 %, the last line of its table.
+std::string bound_text(const FinishedRun& run) {
+  constexpr double kShare = 0.95;
+  const auto bound = std::find_if(run.bounds.begin(), run.bounds.end(),
+                                  [](const ViewBound& each) { return each.share == kShare; });
+  if (bound == run.bounds.end()) return "how few views it could be says: " + run.bound_command;
+  const ViewRow* row = first_with(run, kShare);
+  std::string text = "95 % ";
+  if (row) {
+    text += fmt::format("in {} views", row->view);
+  } else if (run.coverage_unknown.empty()) {
+    text += fmt::format("not reached in {} views", run.rows.size());
+  } else {
+    text += "unknown";
+  }
+  if (!bound->reached) return text + ", not even with all views from everywhere reachable";
+  return text + fmt::format(", greedy who knows the scene {}, no planner can below {}",
+                            bound->greedy_views, bound->fewest_views);
 }
 
 std::string decision_text(const ViewRow& row) {
@@ -93,7 +144,7 @@ void write_views(std::ostream& out, const FinishedRun& run) {
          "occupied_area_m2,occlusion_plane_area_m2,surface_coverage,map_digest,"
          "attempt,path_length_m,simulated_s,min_quality,share_occupied,share_occlusion_plane,"
          "share_unseen,share_open,quality_factor,"
-         "move_s,scan_s,update_s,digest_s,fold_s,wait_s\n";
+         "move_s,scan_s,update_s,digest_s,fold_s,wait_s,surface_precision\n";
   for (const ViewRow& row : run.rows) {
     const commit_t& commit = row.commit;
     fmt::print(out, "{},{:.6f},{:.6f},{:.6f},{:.4f},{:.4f},{},", row.view,
@@ -101,7 +152,7 @@ void write_views(std::ostream& out, const FinishedRun& run) {
                commit.pan_rad * kDegreesPerRad, commit.tilt_rad * kDegreesPerRad,
                decision_text(row));
     fmt::print(out, "{:.6f},{:.4f},{:.4f},{},{},", commit.mean_quality, commit.occupied_area_m2,
-               commit.occlusion_plane_area_m2, coverage_text(row), commit.map_digest);
+               commit.occlusion_plane_area_m2, share_text(row.surface_coverage), commit.map_digest);
     fmt::print(out, "{},{:.6f},{:.6f},{:.6f},", row.goal.attempt, row.arrival.path_length_m,
                static_cast<double>(commit.utime) * 1e-6, commit.min_quality);
     if (row.chosen()) {
@@ -116,7 +167,7 @@ void write_views(std::ostream& out, const FinishedRun& run) {
          {row.scan_s, row.update_s, row.digest_s, row.fold_s, row.wait_s}) {
       out << ',' << seconds_text(duration);
     }
-    out << '\n';
+    out << ',' << share_text(row.surface_precision) << '\n';
   }
 }
 
@@ -132,6 +183,9 @@ void write_summary(std::ostream& out, const FinishedRun& run) {
   json["surface_coverage"] =
       last && last->surface_coverage ? Json(*last->surface_coverage) : Json(nullptr);
   if (!run.coverage_unknown.empty()) json["surface_coverage_unknown"] = run.coverage_unknown;
+  json["surface_precision"] =
+      last && last->surface_precision ? Json(*last->surface_precision) : Json(nullptr);
+  if (!run.precision_unknown.empty()) json["surface_precision_unknown"] = run.precision_unknown;
   json["mean_quality"] = last ? last->commit.mean_quality : 0.0;
   json["occupied_area_m2"] = last ? last->commit.occupied_area_m2 : 0.0;
   json["occlusion_plane_area_m2"] = last ? last->commit.occlusion_plane_area_m2 : 0.0;
@@ -165,6 +219,10 @@ void write_summary(std::ostream& out, const FinishedRun& run) {
                                {"samples_per_m2", run.visible->samples_per_m2},
                                {"positions", run.visible->positions}};
   }
+  json["bounds"] = run.bounds.empty() ? Json(nullptr) : bounds_json(run);
+  if (run.bounds.empty() && !run.bound_command.empty()) {
+    json["bounds_unknown"] = "they have not been worked out: " + run.bound_command;
+  }
   json["scene_file"] = run.config.scene_file;
   json["scene_digest"] = run.config.scene_digest;
   json["run"] = run.config.run;
@@ -191,6 +249,11 @@ void write_table(std::ostream& out, const FinishedRun& run) {
   } else {
     line("surface coverage", "unknown, because " + run.coverage_unknown);
   }
+  line("surface precision",
+       last.surface_precision
+           ? fmt::format("{:.3f} of Occupied voxels with surface in or beside them",
+                         *last.surface_precision)
+           : "unknown, because " + run.precision_unknown);
   line("mean quality", fmt::format("{:.3f}", last.commit.mean_quality));
   line("occupied area", fmt::format("{:.1f} m2", last.commit.occupied_area_m2));
   line("path, collisions", fmt::format("{:.1f} m, {}", path_length_m(run), run.collisions));
@@ -206,6 +269,7 @@ void write_table(std::ostream& out, const FinishedRun& run) {
       fmt::format("{:.2f} s; first goal to last commit {:.2f} s, {:.0f} % of it bus and waiting",
                   run.wall_s, run.first_goal_to_last_commit_s, 100.0 * bus_and_waiting_share(run)));
   line("map digest", last.commit.map_digest);
+  if (!run.bounds.empty() || !run.bound_command.empty()) out << "  " << bound_text(run) << '\n';
 }
 
 }  // namespace nextview

@@ -6,9 +6,11 @@
 #include <optional>
 #include <ostream>
 #include <string>
+#include <vector>
 
 #include "logger/run_log.h"
 #include "report/view_rows.h"
+#include "scoring/view_bound.h"
 #include "scoring/visible_surface.h"
 
 namespace nextview {
@@ -22,9 +24,12 @@ struct FinishedRun {
   int collisions = 0;      ///< goals the base refused because its body would have touched something
   int other_refusals = 0;  ///< goals it refused for another reason
   std::optional<VisibleSurface> visible;
-  std::string coverage_unknown;  ///< why there is no surface coverage; empty when there is
-  double wall_s = 0.0;           ///< from the start of the program
-  double start_up_s = 0.0;       ///< from there to the first goal
+  std::string coverage_unknown;   ///< why there is no surface coverage; empty when there is
+  std::string precision_unknown;  ///< why there is no surface precision; empty when there is
+  std::vector<ViewBound> bounds;  ///< how few views the scene takes; empty while that is not known
+  std::string bound_command;      ///< what would tell; empty when there is no scene
+  double wall_s = 0.0;            ///< from the start of the program
+  double start_up_s = 0.0;        ///< from there to the first goal
   double first_goal_to_last_commit_s = 0.0;               ///< as seen on the bus
   std::map<std::string, std::int64_t> peak_memory_bytes;  ///< by role
   std::size_t map_memory_bytes = 0;                       ///< of the voxel map alone, at the end

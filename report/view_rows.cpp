@@ -1,5 +1,7 @@
 #include "report/view_rows.h"
 
+#include <utility>
+
 #include "mapper/mapper_config.h"
 
 namespace nextview {
@@ -48,7 +50,9 @@ const ViewRow* ViewRows::advance(RunRecord& record) {
   take_timings(record, row);
   const FoldReport& fold = builder_.fold(record.range_image(view, attempt)->image);
   coverage_.add_view(builder_.map(), fold);
+  precision_.add_view(builder_.map(), fold);
   row.surface_coverage = coverage_.after_view(view);
+  row.surface_precision = precision_.after_view(view);
   record.forget_range_image(view, attempt);
   return &rows_.emplace_back(std::move(row));
 }
@@ -57,9 +61,12 @@ void ViewRows::set_visible(const VisibleSurface& surface) {
   coverage_.set_visible(builder_.map(), surface);
 }
 
+void ViewRows::set_near(NearSurface near) { precision_.set_near(builder_.map(), std::move(near)); }
+
 void ViewRows::complete(const RunRecord& record) {
   for (ViewRow& row : rows_) {
     row.surface_coverage = coverage_.after_view(row.view);
+    row.surface_precision = precision_.after_view(row.view);
     take_timings(record, row);
   }
 }

@@ -7,6 +7,7 @@
 #include "logger/run_record.h"
 #include "mapper/map_builder.h"
 #include "scoring/surface_coverage.h"
+#include "scoring/surface_precision.h"
 
 namespace nextview {
 
@@ -18,6 +19,7 @@ struct ViewRow {
   arrival_t arrival{};  ///< likewise
   commit_t commit{};
   std::optional<double> surface_coverage;
+  std::optional<double> surface_precision;
 
   // Wall clock, as far as the timings have come.
   using Duration = std::optional<double>;
@@ -46,8 +48,10 @@ class ViewRows {
 
   /// What could be seen at best has become known.
   void set_visible(const VisibleSurface& surface);
+  /// Where there is surface has become known.
+  void set_near(NearSurface near);
 
-  /// Fills in what is known later than the row itself: coverage, and the timings.
+  /// Fills in what is known later than the row itself: coverage, precision and the timings.
   void complete(const RunRecord& record);
 
   const std::vector<ViewRow>& rows() const { return rows_; }
@@ -57,6 +61,7 @@ class ViewRows {
  private:
   MapBuilder builder_;
   SurfaceCoverage coverage_;
+  SurfacePrecision precision_;
   std::vector<ViewRow> rows_;
 };
 

@@ -340,6 +340,30 @@ const char* const kRunDescription =
     "and lcm-logger on a bus of their own, watches them, scores what they do against the CAD\n"
     "model, and leaves run.lcmlog, views.csv and summary.json.\n";
 
+std::string bound_command_for(int argc, char** argv) {
+  const auto quoted = [](const std::string& argument) {
+    constexpr const char* kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
+    if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) {
+      return argument;
+    }
+    std::string text = "'";
+    for (const char character : argument) {
+      text += character == '\'' ? std::string("'\\''") : std::string(1, character);
+    }
+    return text + "'";
+  };
+  std::string command =
+      quoted((std::filesystem::path(argv[0]).parent_path() / "nextview_bound").string());
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument == "--out") ++i;
+    if (argument == "--out" || argument.starts_with("--out=")) continue;
+    command += " " + quoted(argument);
+  }
+  return command;
+}
+
 std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_status,
                                             const std::string& description) {
   RunOptions options;
@@ -379,6 +403,7 @@ std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_sta
     exit_status = 1;
     return std::nullopt;
   }
+  options.bound_command = bound_command_for(argc, argv);
   return options;
 }
 

@@ -76,6 +76,8 @@ struct RunOptions {
   double bound_spacing_m = 0.40;  ///< of the positions nextview_bound looks at
   bool no_coverage = false;       ///< surface_coverage is not worked out
   bool verbose = false;
+
+  std::string bound_command;  ///< for a shell: works out the bounds for what has been typed
 };
 
 /// Reads the command line.
@@ -84,6 +86,9 @@ struct RunOptions {
 /// @param description what --help says first
 std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_status,
                                             const std::string& description);
+/// The command that works out the bounds a run is held against: nextview_bound in the folder of
+/// nextview_run, with what has been typed for the run, --out aside.
+std::string bound_command_for(int argc, char** argv);
 /// Of ./run.
 extern const char* const kRunDescription;
 

@@ -9,7 +9,7 @@
 #include "runner/run_options.h"
 #include "scene/scene.h"
 #include "scoring/view_bound.h"
-#include "scoring/visible_surface.h"
+#include "scoring/visibility_config.h"
 
 namespace nextview {
 
@@ -31,9 +31,6 @@ struct RunSetup {
 /// everything checked.
 /// @throws SetupError, or SceneError where the scene itself cannot be used
 RunSetup prepare_run(const RunOptions& options);
-
-/// Where a robot of this run may be, and what its sensor could see from there.
-VisibilityParameters visibility_of(const run_config_t& config);
 
 /// The question how few views a scene takes, for this run's sensor and start.
 ViewBoundQuestion bound_question_of(const RunOptions& options, const run_config_t& config);

@@ -13,6 +13,7 @@
 
 #include "base_sim/base.h"
 #include "lcmtypes/ask_timer.h"
+#include "mapper/mapper_config.h"
 #include "runner/give_way.h"
 #include "runner/log_completion.h"
 #include "runner/run_signals.h"
@@ -131,7 +132,7 @@ void RunSupervisor::start_up() {
   heard_.record.add(setup_.config);
   bus_->publish(setup_.config);
   heard_.last_progress = Clock::now();
-  if (setup_.scene && !options_.no_coverage) start_scoring();
+  if (setup_.scene) start_scoring();
   // Each says so when it has loaded what it needs; only then is there somebody to hear a goal.
   pump_until([&] { return all_of(answering, heard_.fresh_statuses); });
   processes_->start_planner(options_.planner);
@@ -148,6 +149,11 @@ bool RunSupervisor::recording() {
 }
 
 void RunSupervisor::start_scoring() {
+  near_surface_.emplace([scene = setup_.scene, config = setup_.config](const std::stop_token& stop,
+                                                                       VisibilityProgress*) {
+    return NearSurface(scene->mesh(), grid_of(config), window_of(config), stop);
+  });
+  if (options_.no_coverage) return;
   scoring_.emplace(
       [scene = setup_.scene, config = setup_.config, cache = cache_folder(options_.cache)](
           const std::stop_token& stop, VisibilityProgress* progress) {
@@ -179,6 +185,12 @@ void RunSupervisor::watch() {
 }
 
 void RunSupervisor::make_rows(milliseconds wait_for_scoring) {
+  if (near_surface_) {
+    if (auto near = near_surface_->take(wait_for_scoring)) {
+      rows_.set_near(std::move(*near));
+      near_known_ = true;
+    }
+  }
   if (scoring_) {
     if (auto visible = scoring_->take(wait_for_scoring)) {
       visible_ = std::move(*visible);
@@ -266,17 +278,18 @@ void RunSupervisor::end_processes(FinishedRun& run) {
 }
 
 void RunSupervisor::wait_for_scoring() {
-  if (!scoring_) return;
+  const auto pending = [](const auto& work) { return work && work->pending(); };
   AskTimer patience = reminder_after(milliseconds(1000));
-  while (scoring_->pending() && noted_signal() == 0 && !ended_early_) {
+  while ((pending(near_surface_) || pending(scoring_)) && noted_signal() == 0 && !ended_early_) {
     make_rows(milliseconds(50));
-    if (scoring_->pending() && patience.due()) {
+    if (pending(scoring_) && patience.due()) {
       progress_.say(fmt::format(
           "working out how much of the scene can be seen at all, for the coverage: {} %",
           scoring_->percent()));
     }
   }
-  scoring_->request_stop();
+  if (near_surface_) near_surface_->request_stop();
+  if (scoring_) scoring_->request_stop();
 }
 
 std::string RunSupervisor::why_coverage_is_unknown() const {
@@ -285,6 +298,22 @@ std::string RunSupervisor::why_coverage_is_unknown() const {
   if (options_.no_coverage) return "--no-coverage was given";
   if (scoring_ && !scoring_->failure().empty()) return scoring_->failure();
   return "the run ended before it was worked out";
+}
+
+std::string RunSupervisor::why_precision_is_unknown() const {
+  if (!setup_.scene) return "there is no CAD model to hold the map against";
+  if (near_surface_ && !near_surface_->failure().empty()) return near_surface_->failure();
+  if (!near_known_) return "the run ended before it was worked out";
+  const auto& rows = rows_.rows();
+  return rows.empty() || !rows.back().surface_precision ? "nothing is Occupied" : std::string();
+}
+
+void RunSupervisor::add_bounds(FinishedRun& run) const {
+  if (!setup_.scene) return;
+  run.bounds = kept_view_bounds(cache_folder(options_.cache), setup_.config.scene_digest,
+                                bound_question_of(options_, setup_.config))
+                   .value_or(std::vector<ViewBound>());
+  run.bound_command = options_.bound_command;
 }
 
 FinishedRun RunSupervisor::finish(Clock::time_point program_start) {
@@ -299,6 +328,8 @@ FinishedRun RunSupervisor::finish(Clock::time_point program_start) {
   run.map_memory_bytes = rows_.map_memory_bytes();
   run.visible = visible_;
   run.coverage_unknown = why_coverage_is_unknown();
+  run.precision_unknown = why_precision_is_unknown();
+  add_bounds(run);
   run.statuses = heard_.statuses;
   run.lcm_url = lcm_url_;
   if (log_) run.log = log_->counters();

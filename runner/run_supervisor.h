@@ -16,6 +16,7 @@
 #include "runner/port_lock.h"
 #include "runner/run_processes.h"
 #include "runner/run_setup.h"
+#include "scoring/near_surface.h"
 
 namespace nextview {
 
@@ -53,6 +54,8 @@ class RunSupervisor {
   FinishedRun finish(Clock::time_point program_start);
   void end_processes(FinishedRun& run);
   std::string why_coverage_is_unknown() const;
+  std::string why_precision_is_unknown() const;
+  void add_bounds(FinishedRun& run) const;
 
   template <class Condition>
   void pump_until(const Condition& condition);
@@ -75,7 +78,9 @@ class RunSupervisor {
   std::optional<RunLog> log_;
   std::optional<EndsEarly> ended_early_;
 
-  std::optional<BackgroundScoring> scoring_;
+  std::optional<BackgroundScoring<NearSurface>> near_surface_;
+  std::optional<BackgroundScoring<VisibleSurface>> scoring_;
+  bool near_known_ = false;
   std::optional<VisibleSurface> visible_;
 };
 

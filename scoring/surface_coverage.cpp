@@ -1,12 +1,11 @@
 #include "scoring/surface_coverage.h"
 
+#include "scoring/newly_occupied.h"
+
 namespace nextview {
 
 void SurfaceCoverage::add_view(const VoxelMap& map, const FoldReport& fold) {
-  std::vector<std::uint32_t>& slots = newly_occupied_.emplace_back();
-  for (const std::uint32_t slot : fold.changed_slots) {
-    if (map.labels()[slot] == Label::Occupied) slots.push_back(slot);
-  }
+  newly_occupied_.push_back(newly_occupied(map, fold));
   if (samples_ > 0) count(newly_occupied_.size() - 1);
 }
 

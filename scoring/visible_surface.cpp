@@ -100,6 +100,16 @@ std::optional<std::vector<std::uint8_t>> unpacked(const std::string& bits, std::
   return seen;
 }
 
+std::optional<VisibleSurface> kept_answer(const std::string& folder, const std::string& key,
+                                          const Question& question) {
+  if (folder.empty()) return std::nullopt;
+  const auto bits = read_kept(folder, key);
+  if (!bits) return std::nullopt;
+  const auto seen = unpacked(*bits, question.samples_m.size());
+  if (!seen) return std::nullopt;
+  return surface_of(question, *seen);
+}
+
 }  // namespace
 
 VisibleSurface visible_surface(const Scene& scene, const Eigen::Vector3d& start_m,
@@ -115,18 +125,20 @@ VisibleSurface kept_visible_surface(const std::string& folder, const Scene& scen
   const Question question = question_of(scene, start_m, parameters, stop);
   if (stop.stop_requested()) return {};
   const std::string key = folder.empty() ? "" : key_of(scene_digest, question, parameters);
-  if (!folder.empty()) {
-    if (const auto bits = read_kept(folder, key)) {
-      if (const auto seen = unpacked(*bits, question.samples_m.size())) {
-        return surface_of(question, *seen);
-      }
-    }
-  }
+  if (const auto kept = kept_answer(folder, key, question)) return *kept;
   VisibilityProgress unwatched;
   const std::vector<std::uint8_t> seen =
       seen_samples(scene, question, parameters.range_max_m, stop, progress ? *progress : unwatched);
   if (!folder.empty() && !stop.stop_requested()) keep(folder, key, packed(seen));
   return surface_of(question, seen);
+}
+
+std::optional<VisibleSurface> visible_surface_if_kept(const std::string& folder, const Scene& scene,
+                                                      const std::string& scene_digest,
+                                                      const Eigen::Vector3d& start_m,
+                                                      const VisibilityParameters& parameters) {
+  const Question question = question_of(scene, start_m, parameters, {});
+  return kept_answer(folder, key_of(scene_digest, question, parameters), question);
 }
 
 }  // namespace nextview

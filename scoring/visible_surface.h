@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <atomic>
 #include <cstdint>
+#include <optional>
 #include <stop_token>
 #include <string>
 #include <vector>
@@ -57,5 +58,12 @@ VisibleSurface kept_visible_surface(const std::string& folder, const Scene& scen
                                     const VisibilityParameters& parameters,
                                     const std::stop_token& stop = {},
                                     VisibilityProgress* progress = nullptr);
+
+/// That of the function above if it has been kept; else nothing. Finds the positions, no more.
+/// @throws CoverageUnknown as above
+std::optional<VisibleSurface> visible_surface_if_kept(const std::string& folder, const Scene& scene,
+                                                      const std::string& scene_digest,
+                                                      const Eigen::Vector3d& start_m,
+                                                      const VisibilityParameters& parameters);
 
 }  // namespace nextview

@@ -80,7 +80,7 @@ TEST(Views, AreBlankWhereATimingWasLost) {
   write_views(out, run);
   const auto lines = lines_of(out.str());
   EXPECT_NE(lines[2].find(",0.75,6,9,,0.500000,"), std::string::npos) << lines[2];
-  EXPECT_TRUE(lines[2].ends_with(",,,0.003000,,,0.500000")) << lines[2];
+  EXPECT_TRUE(lines[2].ends_with(",,,0.003000,,,0.500000,")) << lines[2];
 }
 
 TEST(Summary, SaysHowTheRunEnded) {
@@ -154,6 +154,113 @@ TEST(Summary, SaysWhyThereIsNoCoverage) {
   std::ostringstream table;
   write_table(table, run);
   EXPECT_NE(table.str().find("unknown, because nobody looked"), std::string::npos) << table.str();
+}
+
+TEST(Views, EndOnThePrecision) {
+  FinishedRun run = two_views();
+  run.rows[1].surface_precision = 0.75;
+  std::ostringstream out;
+  write_views(out, run);
+  const auto lines = lines_of(out.str());
+  EXPECT_TRUE(lines[0].ends_with(",wait_s,surface_precision")) << lines[0];
+  EXPECT_TRUE(lines[1].ends_with(",")) << lines[1];
+  EXPECT_TRUE(lines[2].ends_with(",0.750000")) << lines[2];
+}
+
+TEST(Summary, HasThePrecisionOrSaysWhyNot) {
+  FinishedRun run = two_views();
+  run.rows[1].surface_precision = 0.75;
+  const auto summary_of = [](const FinishedRun& finished) {
+    std::ostringstream out;
+    write_summary(out, finished);
+    return nlohmann::json::parse(out.str());
+  };
+  const auto table_of = [](const FinishedRun& finished) {
+    std::ostringstream out;
+    write_table(out, finished);
+    return out.str();
+  };
+  EXPECT_EQ(summary_of(run).at("surface_precision"), 0.75);
+  EXPECT_FALSE(summary_of(run).contains("surface_precision_unknown"));
+  EXPECT_NE(table_of(run).find("surface precision     0.750 of Occupied"), std::string::npos)
+      << table_of(run);
+  run.rows[1].surface_precision.reset();
+  run.precision_unknown = "nobody looked";
+  EXPECT_TRUE(summary_of(run).at("surface_precision").is_null());
+  EXPECT_EQ(summary_of(run).at("surface_precision_unknown"), "nobody looked");
+  EXPECT_NE(table_of(run).find("surface precision     unknown, because nobody looked"),
+            std::string::npos)
+      << table_of(run);
+}
+
+/// The run of two views, of which the second reaches 96 %, and a bound for 95 and 99 %.
+FinishedRun bounded() {
+  FinishedRun run = two_views();
+  run.rows[1].surface_coverage = 0.96;
+  run.bound_command = "nextview_bound box";
+  run.bounds = {{.share = 0.95,
+                 .reached = true,
+                 .greedy_views = 16,
+                 .greedy_m = 12.5,
+                 .fewest_views = 11,
+                 .shortest_m = 0.75},
+                {.share = 0.99}};
+  return run;
+}
+
+std::string last_line_of_table(const FinishedRun& run) {
+  std::ostringstream out;
+  write_table(out, run);
+  return lines_of(out.str()).back();
+}
+
+TEST(Bound, EndsTheTable) {
+  FinishedRun run = bounded();
+  EXPECT_EQ(last_line_of_table(run),
+            "  95 % in 2 views, greedy who knows the scene 16, no planner can below 11");
+  run.rows[1].surface_coverage = 0.94;
+  EXPECT_EQ(
+      last_line_of_table(run),
+      "  95 % not reached in 2 views, greedy who knows the scene 16, no planner can below 11");
+  run.rows[1].surface_coverage.reset();
+  run.coverage_unknown = "nobody looked";
+  EXPECT_EQ(last_line_of_table(run),
+            "  95 % unknown, greedy who knows the scene 16, no planner can below 11");
+  run.bounds[0].reached = false;
+  EXPECT_EQ(last_line_of_table(run),
+            "  95 % unknown, not even with all views from everywhere reachable");
+}
+
+TEST(Bound, ThatIsNotKnownNamesTheCommandThatTells) {
+  FinishedRun run = bounded();
+  run.bounds.clear();
+  EXPECT_EQ(last_line_of_table(run), "  how few views it could be says: nextview_bound box");
+  std::ostringstream out;
+  write_summary(out, run);
+  const auto json = nlohmann::json::parse(out.str());
+  EXPECT_TRUE(json.at("bounds").is_null());
+  EXPECT_EQ(json.at("bounds_unknown"), "they have not been worked out: nextview_bound box");
+  run.bound_command.clear();
+  EXPECT_TRUE(last_line_of_table(run).starts_with("  map digest")) << "without a scene";
+}
+
+TEST(Bound, IsInTheSummary) {
+  std::ostringstream out;
+  write_summary(out, bounded());
+  const auto json = nlohmann::json::parse(out.str()).at("bounds");
+  ASSERT_EQ(json.size(), 2u);
+  EXPECT_EQ(json[0].at("surface_coverage"), 0.95);
+  EXPECT_EQ(json[0].at("views"), 2);
+  EXPECT_EQ(json[0].at("path_length_m"), 1.5);
+  EXPECT_EQ(json[0].at("can_be_reached"), true);
+  EXPECT_EQ(json[0].at("greedy_views"), 16);
+  EXPECT_EQ(json[0].at("greedy_path_length_m"), 12.5);
+  EXPECT_EQ(json[0].at("least_views"), 11);
+  EXPECT_EQ(json[0].at("least_path_length_m"), 0.75);
+  EXPECT_TRUE(json[1].at("views").is_null());
+  EXPECT_TRUE(json[1].at("path_length_m").is_null());
+  EXPECT_EQ(json[1].at("can_be_reached"), false);
+  EXPECT_FALSE(json[1].contains("greedy_views"));
 }
 
 TEST(Summary, CountsCollisionsApartFromOtherRefusals) {

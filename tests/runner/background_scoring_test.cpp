@@ -11,7 +11,7 @@ namespace {
 constexpr std::chrono::milliseconds kLong{60000};
 
 TEST(BackgroundScoring, GivesWhatWasWorkedOutOnce) {
-  BackgroundScoring scoring([](const std::stop_token&, VisibilityProgress*) {
+  BackgroundScoring<VisibleSurface> scoring([](const std::stop_token&, VisibilityProgress*) {
     VisibleSurface surface;
     surface.samples = 7;
     return surface;
@@ -25,16 +25,17 @@ TEST(BackgroundScoring, GivesWhatWasWorkedOutOnce) {
 }
 
 TEST(BackgroundScoring, ThatFailsSaysWhyAndHarmsNobody) {
-  BackgroundScoring scoring([](const std::stop_token&, VisibilityProgress*) -> VisibleSurface {
-    throw std::runtime_error("no room for the positions");
-  });
+  BackgroundScoring<VisibleSurface> scoring(
+      [](const std::stop_token&, VisibilityProgress*) -> VisibleSurface {
+        throw std::runtime_error("no room for the positions");
+      });
   EXPECT_FALSE(scoring.take(kLong));
   EXPECT_FALSE(scoring.pending());
   EXPECT_EQ(scoring.failure(), "it could not be worked out: no room for the positions");
 }
 
 TEST(BackgroundScoring, SurvivesWhatIsNoException) {
-  BackgroundScoring scoring(
+  BackgroundScoring<VisibleSurface> scoring(
       [](const std::stop_token&, VisibilityProgress*) -> VisibleSurface { throw 1; });
   EXPECT_FALSE(scoring.take(kLong));
   EXPECT_EQ(scoring.failure(), "it could not be worked out");
@@ -42,7 +43,7 @@ TEST(BackgroundScoring, SurvivesWhatIsNoException) {
 
 TEST(BackgroundScoring, EndsWhenAskedToAndSaysHowFarItIs) {
   std::atomic<bool> half_done = false;
-  BackgroundScoring scoring(
+  BackgroundScoring<VisibleSurface> scoring(
       [&half_done](const std::stop_token& stop, VisibilityProgress* progress) {
         progress->of = 40;
         progress->done = 20;
@@ -63,11 +64,12 @@ TEST(BackgroundScoring, EndsWhenAskedToAndSaysHowFarItIs) {
 TEST(BackgroundScoring, IsNotWaitedForWhenItIsDropped) {
   std::atomic<bool> stopped = false;
   {
-    const BackgroundScoring scoring([&stopped](const std::stop_token& stop, VisibilityProgress*) {
-      while (!stop.stop_requested()) std::this_thread::yield();
-      stopped = true;
-      return VisibleSurface{};
-    });
+    const BackgroundScoring<VisibleSurface> scoring(
+        [&stopped](const std::stop_token& stop, VisibilityProgress*) {
+          while (!stop.stop_requested()) std::this_thread::yield();
+          stopped = true;
+          return VisibleSurface{};
+        });
   }
   EXPECT_TRUE(stopped);
 }

@@ -208,5 +208,19 @@ TEST(RunSetup, ScoresWhereTheRobotMayBe) {
   EXPECT_EQ(reach.box_max_m.x(), config.base.workspace_max_m[0]);
 }
 
+TEST(BoundCommand, IsWhatHasBeenTypedWithoutTheFolder) {
+  const auto command_of = [](std::vector<std::string> arguments) {
+    std::vector<char*> argv;
+    for (std::string& argument : arguments) argv.push_back(argument.data());
+    return bound_command_for(static_cast<int>(argv.size()), argv.data());
+  };
+  EXPECT_EQ(command_of({"bin/nextview_run"}), "bin/nextview_bound");
+  EXPECT_EQ(command_of({"/b/nextview_run", "boxes", "--out", "/tmp/x", "--seed", "2"}),
+            "/b/nextview_bound boxes --seed 2");
+  EXPECT_EQ(command_of({"nextview_run", "--out=/tmp/x", "my flat.obj", "--start", "1", "-2", "1"}),
+            "nextview_bound 'my flat.obj' --start 1 -2 1");
+  EXPECT_EQ(command_of({"nextview_run", "it's.obj"}), "nextview_bound 'it'\\''s.obj'");
+}
+
 }  // namespace
 }  // namespace nextview
