@@ -109,7 +109,7 @@ double most_left_m2(const VoxelMap& map, const Scene& scene, const SensorPose& p
 // ever reached.
 Exploration run_in(const TriangleMesh& mesh, SurfaceParameters parameters,
                    double refuse_beyond_m = std::numeric_limits<double>::infinity(),
-                   int max_views = 80, bool check_what_is_left = false) {
+                   int max_views = 80, bool check_what_is_left = false, int threads = 1) {
   const Scene scene(mesh);
   const Eigen::AlignedBox3d bounds = mesh.bounds_m();
   BaseLimits limits;
@@ -129,7 +129,7 @@ Exploration run_in(const TriangleMesh& mesh, SurfaceParameters parameters,
   const SurfaceStrategy& surface = *strategy;
   const VoxelIndex last = VoxelGrid{kVoxel_m}.voxel_of(bounds.max()) + VoxelIndex::Constant(2);
   ViewPlanner planner({kVoxel_m}, {VoxelIndex::Constant(-2), last + VoxelIndex::Constant(3)},
-                      std::move(strategy), {.seed = 1, .max_views = max_views});
+                      std::move(strategy), {.seed = 1, .max_views = max_views, .threads = threads});
   const RayTable rays = make_ray_table(TiltedLineScan::paper());
   Exploration run;
   while (!run.ending) {
@@ -197,9 +197,7 @@ TEST(SurfaceStrategy, LeavesNoViewThatWouldShowMuch) {
   EXPECT_LT(run.most_left_m2, 0.5);
 }
 
-TEST(SurfaceStrategy, DecidesTheSameAgain) {
-  const Exploration first = run_in(one_room(), {}, std::numeric_limits<double>::infinity(), 8);
-  const Exploration second = run_in(one_room(), {}, std::numeric_limits<double>::infinity(), 8);
+void expect_same(const Exploration& first, const Exploration& second) {
   EXPECT_EQ(first.ending->reason, StopReason::ViewLimit);
   ASSERT_EQ(first.poses.size(), second.poses.size());
   for (std::size_t i = 0; i < first.poses.size(); ++i) {
@@ -207,6 +205,13 @@ TEST(SurfaceStrategy, DecidesTheSameAgain) {
     EXPECT_EQ(first.poses[i].pan_rad, second.poses[i].pan_rad);
     EXPECT_EQ(first.poses[i].tilt_rad, second.poses[i].tilt_rad);
   }
+}
+
+TEST(SurfaceStrategy, DecidesTheSameAgainAndWithMoreThreads) {
+  constexpr double kAnywhere = std::numeric_limits<double>::infinity();
+  const Exploration first = run_in(one_room(), {}, kAnywhere, 8);
+  expect_same(first, run_in(one_room(), {}, kAnywhere, 8));
+  expect_same(first, run_in(one_room(), {}, kAnywhere, 8, false, 3));
 }
 
 TEST(SurfaceStrategy, NeverTriesARefusedGoalAgainAndSaysWhatItLeft) {
