@@ -258,8 +258,8 @@ Json report_data(const std::filesystem::path& folder_or_log) {
   for (const MissingMessage& message : record.missing()) missing.push_back(describe(message));
   data["log"] = {{"messages", log.counters().messages},
                  {"ours", log.counters().ours},
-                 {"strangers", log.counters().strangers},
-                 {"duplicates", log.counters().duplicates},
+                 {"foreign", log.counters().foreign},
+                 {"repeated", log.counters().repeated},
                  {"dropped", log.dropped()},
                  {"contradictions", log.contradictions()},
                  {"missing", missing},

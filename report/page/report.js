@@ -110,7 +110,7 @@ function showTrust() {
       card.append(table, make("p", { class: "soft" }, kCounters.map(([name, why]) => `${name}: ${why}`).join("; ") + "."));
     }
     const log = run.log;
-    card.append(make("p", {}, `Log: ${log.messages} messages, ${log.ours} of this run, ${log.duplicates} there twice, ${log.strangers} of others, ${log.bytes_left} bytes left over.`));
+    card.append(make("p", {}, `Log: ${log.messages} messages, ${log.ours} of this run, ${log.repeated} there twice, ${log.foreign} of others, ${log.bytes_left} bytes left over.`));
     for (const [what, lines] of [["missing", log.missing], ["cannot be right", log.dropped], ["contradict each other", log.contradictions],
       ["refused goals", run.refusals.map((r) => `view ${r.view}, attempt ${r.attempt}: ${r.why}`)]]) {
       if (lines.length === 0) {

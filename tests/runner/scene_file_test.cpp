@@ -61,8 +61,8 @@ quality = true
   EXPECT_EQ(*options->scene, (folder_ / "rooms/flat.dae").string());
   EXPECT_EQ(options->unit, "cm");
   EXPECT_EQ(options->start_m, (std::vector<double>{1.0, 2.5, 1.2}));
-  EXPECT_EQ(options->columns, 128);
-  EXPECT_EQ(options->range.max_m, 12.5);
+  EXPECT_EQ(options->given_of_sensor.columns, 128);
+  EXPECT_EQ(options->given_of_sensor.range_max_m, 12.5);
   EXPECT_EQ(options->lift_max_m, 2.0);
   EXPECT_TRUE(options->quality);
 }
