@@ -199,6 +199,37 @@ TEST(RunSetup, NamesTheLiftWhenTheStartIsBeyondIt) {
   }
 }
 
+TEST(RunSetup, TakesASensorByNameAndWhatIsSaidOfItBesides) {
+  RunOptions options = boxes();
+  options.sensor = "panorama";
+  options.given_of_sensor.columns = 100;
+  options.prediction_rays = "48x16";
+  const run_config_t config = prepare_run(options).config;
+  EXPECT_EQ(check(config), "");
+  EXPECT_EQ(config.sensor.geometry, 1);
+  EXPECT_EQ(config.sensor.columns, 100);
+  EXPECT_EQ(config.sensor.rows, 250);
+  EXPECT_NEAR(config.sensor.geometry_parameter[0], 2.0 * std::numbers::pi, 1e-12);
+  EXPECT_EQ(config.planner.prediction_columns, 48);
+  EXPECT_EQ(config.planner.prediction_rows, 16);
+}
+
+TEST(RunSetup, RefusesSensorsAndRaysThatCannotBe) {
+  RunOptions options = boxes();
+  options.sensor = "sonar";
+  EXPECT_THROW(prepare_run(options), SetupError);
+  options.sensor = "paper";
+  options.aperture_deg = 90.0;
+  EXPECT_THROW(prepare_run(options), SetupError);
+  options.aperture_deg = 60.0;
+  for (const char* rays : {"64", "64x", "64x1", "64x32x2", "9999x32", "0x0"}) {
+    options.prediction_rays = rays;
+    EXPECT_THROW(prepare_run(options), SetupError) << rays;
+  }
+  options.prediction_rays = "64x32";
+  EXPECT_NO_THROW(prepare_run(options));
+}
+
 TEST(RunSetup, ScoresWhereTheRobotMayBe) {
   const run_config_t config = prepare_run(boxes()).config;
   const ReachParameters reach = visibility_of(config).reach;

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <map>
+#include <numbers>
 #include <optional>
 #include <random>
 #include <set>
@@ -12,6 +14,7 @@
 
 #include "mapper/integer_line.h"
 #include "planner/prediction/grown_surface.h"
+#include "sensor/sensor_pose.h"
 
 namespace nextview {
 namespace {
@@ -100,6 +103,50 @@ class PlainGain {
   std::map<std::size_t, int> cells_of_;
   std::map<std::size_t, int> grown_cells_of_;
 };
+
+// A sensor sees a cell when one of its rays is as near as its neighbours are to each other.
+TEST(PanoramaViews, AreTheCellsThatHaveARayOfTheSensorNearby) {
+  const SensorGeometry sensors[] = {
+      TiltedLineScan::paper(), SphericalScanner{64, 32, 2.0 * std::numbers::pi, 1.745},
+      SphericalScanner{64, 32, 3.6, 1.745}, LineStriper{64, 32, 1.2, 0.9, 0.1}};
+  const std::vector<Orientation> orientations = icosahedron_orientations();
+  for (const SensorGeometry& sensor : sensors) {
+    const RayTable rays = make_ray_table(sensor);
+    const PanoramaViews views(rays, orientations);
+    double spacing = 0.0;
+    for (int v = 0; v + 1 < rays.rows(); ++v) {
+      for (int u = 0; u + 1 < rays.columns(); ++u) {
+        spacing = std::max({spacing, std::acos(rays.ray(u, v).dot(rays.ray(u + 1, v))),
+                            std::acos(rays.ray(u, v).dot(rays.ray(u, v + 1)))});
+      }
+    }
+    for (const std::size_t view : {0u, 7u, 13u}) {
+      const Eigen::Matrix3d rotation =
+          world_from_sensor_rotation(orientations[view].pan_rad, orientations[view].tilt_rad);
+      std::vector<bool> sees(Panorama::kCells, false);
+      views.for_each_cell(view, [&](int cell) { sees[static_cast<std::size_t>(cell)] = true; });
+      std::vector<Vector3d> directions;
+      for (int v = 0; v < rays.rows(); ++v) {
+        for (int u = 0; u < rays.columns(); ++u) directions.push_back(rotation * rays.ray(u, v));
+      }
+      int different = 0;
+      int looked_at = 0;
+      for (int cell = 0; cell < Panorama::kCells; cell += 23, ++looked_at) {
+        double nearest = -1.0;
+        const Vector3d middle = Panorama::direction(cell);
+        for (const Vector3d& direction : directions) {
+          nearest = std::max(nearest, middle.dot(direction));
+        }
+        const double angle = std::acos(std::min(nearest, 1.0));
+        const bool is_seen = sees[static_cast<std::size_t>(cell)];
+        different += is_seen ? angle > 0.75 * spacing : angle < 0.25 * spacing;
+      }
+      // Those by the rim.
+      EXPECT_LE(different, looked_at / 200) << "kind " << sensor.index();
+      EXPECT_GT(views.cells(view), 500);
+    }
+  }
+}
 
 TEST(SurfaceGain, IsThatOfTheDefinition) {
   std::mt19937 random(3);

@@ -155,5 +155,17 @@ TEST(PredictionRaster, IsTheSensorsOwnUpTo64By32) {
   EXPECT_EQ(fewer.rays.ray(63, 31), all.ray(511, 255));
 }
 
+TEST(PredictionRaster, OfAPanoramaIsItsPicture64By32OrWhatIsSaid) {
+  const PredictionRaster some = prediction_raster(SphericalScanner{}, {});
+  EXPECT_EQ(some.rays.rows(), 64);     // meridians
+  EXPECT_EQ(some.rays.columns(), 32);  // pixels of each
+  EXPECT_EQ(some.rays.kind, SensorKind::Spherical);
+  const PredictionRaster said = prediction_raster(SphericalScanner{}, {}, {20, 10});
+  EXPECT_EQ(said.rays.rows(), 20);
+  EXPECT_EQ(said.rays.columns(), 10);
+  const PredictionRaster own = prediction_raster(TiltedLineScan::paper(), {}, {512, 512});
+  EXPECT_EQ(own.rays.pixels(), 64u * 30u) << "no more than the sensor has";
+}
+
 }  // namespace
 }  // namespace nextview
