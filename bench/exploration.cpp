@@ -18,11 +18,15 @@ TiltedLineScan sensor_for(double voxel_size_m) {
 }
 
 std::unique_ptr<Strategy> paper_strategy(const ExplorationParameters& parameters, int threads) {
-  auto predictor = std::make_unique<FastViewPredictor>(
-      prediction_raster(TiltedLineScan::paper(), RangeLimits()), parameters.voxel_size_m,
-      icosahedron_orientations(), parameters.planner.use_quality, threads);
-  return std::make_unique<PaperStrategy>(parameters.planner, StopParameters(),
-                                         parameters.voxel_size_m, std::move(predictor));
+  const auto predictor = [&](int columns, int rows, bool quality) {
+    const auto sensor = TiltedLineScan::with_aperture(columns, rows, std::numbers::pi / 3.0);
+    return std::make_unique<FastViewPredictor>(prediction_raster(sensor, RangeLimits()),
+                                               parameters.voxel_size_m, icosahedron_orientations(),
+                                               quality, threads);
+  };
+  return std::make_unique<PaperStrategy>(
+      parameters.planner, StopParameters(), parameters.voxel_size_m,
+      predictor(64, 30, parameters.planner.use_quality), predictor(16, 7, false));
 }
 
 Exploration::Exploration(const BenchScene& scene, const ExplorationParameters& parameters)

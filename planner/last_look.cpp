@@ -15,11 +15,11 @@ bool is_on(int spacing, const VoxelIndex& voxel) {
   return voxel[0] % spacing == 0 && voxel[1] % spacing == 0 && voxel[2] % spacing == 0;
 }
 
-}  // namespace
-
-void LastLook::ask(const Situation& situation, const std::vector<VoxelIndex>& voxels,
-                   ViewEvaluator& evaluator) {
-  const VoxelGrid& grid = situation.space.map().grid();
+// The best views from these voxels that have a fitness above some.
+std::vector<LastLook::View> views_above(double fitness, const VoxelGrid& grid,
+                                        const std::vector<VoxelIndex>& voxels,
+                                        ViewEvaluator& evaluator) {
+  std::vector<LastLook::View> result;
   std::vector<Eigen::Vector3d> together_m;
   for (std::size_t i = 0; i < voxels.size(); i += together_m.size()) {
     together_m.clear();
@@ -28,14 +28,22 @@ void LastLook::ask(const Situation& situation, const std::vector<VoxelIndex>& vo
     evaluator.evaluate(together_m);
     for (std::size_t j = i; j < end; ++j) {
       const BestView& best = evaluator.at(together_m[j - i]);
-      if (best.any && best.fitness.value > kGoodFitness) good_.push_back({voxels[j], best});
+      if (best.any && best.fitness.value > fitness) result.push_back({voxels[j], best});
     }
   }
-  voxels_asked_ += voxels.size();
+  return result;
 }
 
+std::vector<VoxelIndex> voxels_of(const std::vector<LastLook::View>& views) {
+  std::vector<VoxelIndex> voxels;
+  for (const LastLook::View& view : views) voxels.push_back(view.voxel);
+  return voxels;
+}
+
+}  // namespace
+
 std::optional<LastLook::View> LastLook::best_view(const Situation& situation,
-                                                  const ShortestPaths& paths,
+                                                  const ShortestPaths& paths, ViewEvaluator& coarse,
                                                   ViewEvaluator& evaluator) {
   const VoxelMap& map = situation.space.map();
   const auto may_go_to = [&](const VoxelIndex& voxel) {
@@ -44,20 +52,19 @@ std::optional<LastLook::View> LastLook::best_view(const Situation& situation,
              return map.grid().voxel_of(refused.position_m) == voxel;
            });
   };
-  std::vector<VoxelIndex> voxels;
-  for (const View& view : good_) {
-    if (may_go_to(view.voxel)) voxels.push_back(view.voxel);
-  }
-  good_.clear();
-  voxels_asked_ = 0;
-  ask(situation, voxels, evaluator);
+  std::vector<VoxelIndex> voxels = voxels_of(good_);
+  std::erase_if(voxels, [&](const VoxelIndex& voxel) { return !may_go_to(voxel); });
+  good_ = views_above(kGoodFitness, map.grid(), voxels, evaluator);
+  voxels_asked_ = voxels.size();
   for (int spacing = kCoarsest; spacing >= 1 && good_.empty(); spacing /= 2) {
     voxels.clear();
     for (const VoxelIndex& voxel : paths.reached()) {
       const bool asked = spacing < kCoarsest && is_on(2 * spacing, voxel);
       if (is_on(spacing, voxel) && !asked && may_go_to(voxel)) voxels.push_back(voxel);
     }
-    ask(situation, voxels, evaluator);
+    const auto worth_asking = voxels_of(views_above(kWorthAsking, map.grid(), voxels, coarse));
+    good_ = views_above(kGoodFitness, map.grid(), worth_asking, evaluator);
+    voxels_asked_ += voxels.size();
   }
   if (good_.empty()) return std::nullopt;
   const View best = *std::ranges::min_element(good_, {}, [&](const View& view) {

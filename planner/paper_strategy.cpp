@@ -162,8 +162,13 @@ std::optional<Decision> decide_by_simplex(const Situation& situation, ShortestPa
 }
 
 PaperStrategy::PaperStrategy(const PlannerParameters& search, const StopParameters& stop,
-                             double voxel_size_m, std::unique_ptr<ViewPredictor> predictor)
-    : search_(search), stop_(stop), voxel_size_m_(voxel_size_m), predictor_(std::move(predictor)) {
+                             double voxel_size_m, std::unique_ptr<ViewPredictor> predictor,
+                             std::unique_ptr<ViewPredictor> coarse_predictor)
+    : search_(search),
+      stop_(stop),
+      voxel_size_m_(voxel_size_m),
+      predictor_(std::move(predictor)),
+      coarse_predictor_(std::move(coarse_predictor)) {
   search_.check();
   stop_.check();
 }
@@ -209,7 +214,9 @@ NextView PaperStrategy::next_view(const Situation& situation) {
 NextView PaperStrategy::last_look(const Situation& situation) {
   paths_.find_all();
   ViewEvaluator evaluator(situation.space, *predictor_, {}, situation.present);
-  const std::optional<LastLook::View> found = last_look_.best_view(situation, paths_, evaluator);
+  ViewEvaluator coarse(situation.space, *coarse_predictor_, {}, situation.present);
+  const std::optional<LastLook::View> found =
+      last_look_.best_view(situation, paths_, coarse, evaluator);
   if (!found) {
     return Ending{StopReason::NothingNew,
                   std::string(describe(StopReason::NothingNew)) + " From none of " +

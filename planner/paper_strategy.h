@@ -48,9 +48,11 @@ class PaperStrategy : public Strategy {
   static constexpr const char* kName = "paper";
 
   /// @param voxel_size_m of the map, for areas
+  /// @param coarse_predictor of the same orientations, for LastLook
   /// @throws std::invalid_argument for parameters that cannot be
   PaperStrategy(const PlannerParameters& search, const StopParameters& stop, double voxel_size_m,
-                std::unique_ptr<ViewPredictor> predictor);
+                std::unique_ptr<ViewPredictor> predictor,
+                std::unique_ptr<ViewPredictor> coarse_predictor);
 
   KnownSpace::Surfaces surfaces() const override;
   void view_folded(const FoldedView& folded) override;
@@ -66,6 +68,7 @@ class PaperStrategy : public Strategy {
   StopParameters stop_;
   double voxel_size_m_;
   std::unique_ptr<ViewPredictor> predictor_;
+  std::unique_ptr<ViewPredictor> coarse_predictor_;
   std::vector<ViewFacts> views_;              // folded
   std::vector<std::uint32_t> changed_slots_;  // folded, not yet followed
   std::optional<ClearSpace> clear_;           // of the map's window

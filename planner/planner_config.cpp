@@ -1,5 +1,6 @@
 #include "planner/planner_config.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <vector>
 
@@ -71,6 +72,16 @@ std::unique_ptr<ViewPredictor> make_predictor(const run_config_t& config) {
                                              config.planner.threads);
 }
 
+/// A sixteenth of the rays.
+std::unique_ptr<ViewPredictor> make_coarse_predictor(const run_config_t& config) {
+  const PredictionRaster fine = raster_of(config);
+  const PredictionRays coarse{std::max(8, fine.rays.columns() / 4),
+                              std::max(4, fine.rays.rows() / 4)};
+  return std::make_unique<FastViewPredictor>(
+      prediction_raster(sensor_of(config), range_limits_of(config), coarse),
+      config.map.voxel_size_m, orientations_of(config), false, config.planner.threads);
+}
+
 SurfaceParameters surface_parameters_of(const run_config_t& config) {
   constexpr double kImprovementWeight = 0.3;  // docs/strategy.md
   SurfaceParameters parameters;
@@ -89,7 +100,7 @@ std::unique_ptr<Strategy> make_strategy(const run_config_t& config) {
   if (config.strategy == PaperStrategy::kName) {
     return std::make_unique<PaperStrategy>(planner_parameters_of(config),
                                            stop_parameters_of(config), config.map.voxel_size_m,
-                                           make_predictor(config));
+                                           make_predictor(config), make_coarse_predictor(config));
   }
   if (config.strategy == SurfaceStrategy::kName) {
     return std::make_unique<SurfaceStrategy>(raster_of(config), config.map.voxel_size_m,

@@ -24,6 +24,10 @@ using Eigen::Vector3d;
 constexpr double kVoxel_m = 0.1;
 
 PredictionRaster raster() { return prediction_raster(TiltedLineScan::paper(), RangeLimits()); }
+PredictionRaster coarse_raster() {
+  const double aperture_rad = TiltedLineScan::paper().horizontal_aperture_rad;
+  return prediction_raster(TiltedLineScan::with_aperture(16, 7, aperture_rad), RangeLimits());
+}
 
 // Of all voxels that a path leads to.
 double best_fitness(const ShortestPaths& paths, const VoxelGrid& grid, ViewEvaluator& evaluator) {
@@ -42,7 +46,8 @@ class TwoKnownRooms : public ::testing::Test {
  protected:
   TwoKnownRooms()
       : map({kVoxel_m, Vector3d::Zero()}, {VoxelIndex::Zero(), VoxelIndex(50, 25, 20)}),
-        predictor(raster(), kVoxel_m, icosahedron_orientations(), false) {
+        predictor(raster(), kVoxel_m, icosahedron_orientations(), false),
+        coarse_predictor(coarse_raster(), kVoxel_m, icosahedron_orientations(), false) {
     for (int k = 0; k < 20; ++k) {
       for (int j = 0; j < 25; ++j) {
         for (int i = 0; i < 50; ++i) map.set_label({i, j, k}, label_at(i, j, k));
@@ -63,7 +68,8 @@ class TwoKnownRooms : public ::testing::Test {
     ShortestPaths paths;
     paths.find(clear, map, present.position_m, 0.3);
     ViewEvaluator evaluator(space, predictor, {}, present);
-    return last_look.best_view({space, present, 1, 20, 1, refused}, paths, evaluator);
+    ViewEvaluator coarse(space, coarse_predictor, {}, present);
+    return last_look.best_view({space, present, 1, 20, 1, refused}, paths, coarse, evaluator);
   }
 
   double best_fitness_anywhere() {
@@ -77,6 +83,7 @@ class TwoKnownRooms : public ::testing::Test {
 
   VoxelMap map;
   FastViewPredictor predictor;
+  FastViewPredictor coarse_predictor;
   FeasibilityParameters parameters;
   SensorPose present{{0.8, 0.8, 0.9}, 0.0, 0.0};
   std::vector<SensorPose> refused;
@@ -163,16 +170,17 @@ PaperRun recover(const TriangleMesh& mesh, std::int64_t seed, const StopParamete
   search.feasibility.workspace_max_m = bounds.max();
   search.feasibility.lift_min_m = limits.lift_min_m;
   search.feasibility.lift_max_m = limits.lift_max_m;
-  const auto make_predictor = [] {
-    return std::make_unique<FastViewPredictor>(raster(), kVoxel_m, icosahedron_orientations(),
-                                               false);
+  const auto make_predictor = [](const PredictionRaster& rays) {
+    return std::make_unique<FastViewPredictor>(rays, kVoxel_m, icosahedron_orientations(), false);
   };
   SensorPose pose{{0.8, 0.8, 1.2}, 0.0, 0.0};
   Base base(limits, pose, scene);
   const VoxelIndex end = VoxelGrid{kVoxel_m}.voxel_of(bounds.max()) + VoxelIndex::Constant(2);
-  ViewPlanner planner({kVoxel_m}, {VoxelIndex::Constant(-2), end + VoxelIndex::Constant(2)},
-                      std::make_unique<PaperStrategy>(search, stop, kVoxel_m, make_predictor()),
-                      {.seed = seed, .max_views = 120});
+  ViewPlanner planner(
+      {kVoxel_m}, {VoxelIndex::Constant(-2), end + VoxelIndex::Constant(2)},
+      std::make_unique<PaperStrategy>(search, stop, kVoxel_m, make_predictor(raster()),
+                                      make_predictor(coarse_raster())),
+      {.seed = seed, .max_views = 120});
   const RayTable rays = make_ray_table(TiltedLineScan::paper());
   std::vector<ViewFacts> facts;
   PaperRun run;
@@ -199,7 +207,7 @@ PaperRun recover(const TriangleMesh& mesh, std::int64_t seed, const StopParamete
   const ClearSpace clear(planner.map(), search.feasibility);
   ShortestPaths paths;
   paths.find(clear, planner.map(), pose.position_m, search.feasibility.departure_m);
-  const auto predictor = make_predictor();
+  const auto predictor = make_predictor(raster());
   ViewEvaluator evaluator(planner.space(), *predictor, {}, pose);
   run.best_fitness_left = best_fitness(paths, planner.map().grid(), evaluator);
   return run;

@@ -68,7 +68,7 @@ TEST(WholeRun, CoversMoreWithEveryView) {
 TEST(WholeRun, EndsByItsStopRule) {
   const TemporaryFolder folder;
   // More than 89 m2 of new surface cannot come, so the rule holds as soon as it is asked, and the
-  // run goes on only as long as a good view is left.
+  // run goes on only as long as a good view can be reached.
   const Outcome outcome = run_views(folder / "run", 300,
                                     {"--strategy", "paper", "--stop-window", "4", "--stop-new-area",
                                      "1000", "--voxel-size", "0.2"});
@@ -78,6 +78,8 @@ TEST(WholeRun, EndsByItsStopRule) {
   EXPECT_GT(summary.at("views"), 5) << "four views after the one at the start much is unseen";
   EXPECT_LT(summary.at("views"), 300);
   EXPECT_GT(summary.at("surface_coverage"), 0.95);
+  const std::string detail = summary.at("stop_detail");
+  EXPECT_NE(detail.find("a view has a fitness above 0.6"), std::string::npos) << detail;
 }
 
 TEST(WholeRun, EndsWhenNothingIsLeftAndReplays) {
