@@ -30,14 +30,27 @@ install_missing() {
       fail "Packages are missing. As root, type: apt-get install ${missing[*]}"
     as_root=(sudo)
   fi
-  echo "Installing ${missing[*]} (waits up to $apt_patience_s s while another apt is at work)"
-  "${as_root[@]}" apt-get -qq update > "$install_log" 2>&1 &&
-    "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive \
-      apt-get -qq -o DPkg::Lock::Timeout="$apt_patience_s" install --no-install-recommends "${missing[@]}" > "$install_log" 2>&1 || {
+  echo "Installing ${missing[*]}"
+  when_free "${as_root[@]}" env LC_ALL=C apt-get -qq update &&
+    when_free "${as_root[@]}" env LC_ALL=C DEBIAN_FRONTEND=noninteractive \
+      apt-get -qq install --no-install-recommends "${missing[@]}" || {
     cat "$install_log" >&2
     fail "Packages could not be installed. If another apt is still at work, wait for it; then type:" \
       "apt-get install ${missing[*]}"
   }
+}
+
+# when_free APT_COMMAND...: again and again while another apt holds a lock. apt's own DPkg::Lock::Timeout
+# would wait for dpkg's alone, and silently; those of the package lists and of the archive it does not know.
+when_free() {
+  local until=$((SECONDS + apt_patience_s)) said=
+  until "$@" > "$install_log" 2>&1; do
+    grep -q 'Could not get lock' "$install_log" && [ "$SECONDS" -lt "$until" ] || return 1
+    [ -n "$said" ] || echo "Another apt is at work, waiting up to $apt_patience_s s for it: $(
+      sed -n 's/.*Could not get lock/lock/p' "$install_log" | head -n 1)"
+    said=yes
+    sleep 1
+  done
 }
 install_log=$(mktemp)
 trap 'rm -f "$install_log"' EXIT
