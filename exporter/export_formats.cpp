@@ -76,23 +76,23 @@ std::vector<ExportFormat> make_formats() {
   std::vector<ExportFormat> formats;
   for (const auto& [ending, format] :
        {std::pair("ply", PointFormat::Ply), std::pair("pcd", PointFormat::Pcd)}) {
-    formats.push_back(
-        stream_format(std::string("voxels.") + ending, "Occupied voxels: centre, normal, quality",
-                      [format](RecoveredRun& run, const ExportOptions&, std::ostream& out) {
-                        write_occupied_voxels(out, format, run.builder.map());
-                      }));
-    formats.push_back(
-        stream_format(std::string("points.") + ending, "sensed points: position, normal, view",
-                      [format](RecoveredRun& run, const ExportOptions&, std::ostream& out) {
-                        write_sensed_points(out, format, images_of(run));
-                      }));
+    formats.push_back(stream_format(
+        std::string("voxels.") + ending, "Occupied voxels: centre, normal, quality",
+        [format = format](RecoveredRun& run, const ExportOptions&, std::ostream& out) {
+          write_occupied_voxels(out, format, run.builder.map());
+        }));
+    formats.push_back(stream_format(
+        std::string("points.") + ending, "sensed points: position, normal, view",
+        [format = format](RecoveredRun& run, const ExportOptions&, std::ostream& out) {
+          write_sensed_points(out, format, images_of(run));
+        }));
   }
   for (const auto& [ending, format] :
        {std::pair("ply", MeshFormat::Ply), std::pair("obj", MeshFormat::Obj),
         std::pair("gltf", MeshFormat::Gltf), std::pair("glb", MeshFormat::Glb)}) {
     formats.push_back({std::string("mesh.") + ending, "the seen surface in triangles",
-                       [format](RecoveredRun& run, const ExportOptions& options,
-                                const std::filesystem::path& file) {
+                       [format = format](RecoveredRun& run, const ExportOptions& options,
+                                         const std::filesystem::path& file) {
                          write_mesh(mesh_of(run, options), format, file);
                        }});
   }
