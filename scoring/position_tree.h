@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
+#include <unordered_map>
 #include <vector>
 
 #include "scene/scene.h"
@@ -15,6 +16,12 @@ namespace nextview {
 /// definition of visibility, which the plain twin in the tests uses one pair at a time.
 std::optional<std::uint32_t> hidden_by(const Scene& scene, const Eigen::Vector3d& point_m,
                                        const Eigen::Vector3d& position_m);
+
+/// Whether a triangle hides a position from a point by more than the rounding of a ray: true only
+/// where hidden_by would name a triangle, maybe another one; false also when it is not clear. Costs
+/// a fraction of a ray.
+bool clearly_hides(const TriangleMesh& mesh, std::uint32_t triangle, const Eigen::Vector3d& point_m,
+                   const Eigen::Vector3d& position_m);
 
 /// Positions as a tree of boxes, for any number of searches at once.
 class PositionTree {
@@ -38,6 +45,7 @@ class PositionTree {
   const Eigen::Vector3d& position_m(std::int32_t i) const {
     return positions_[static_cast<std::size_t>(i)];
   }
+  std::size_t size() const { return positions_.size(); }
 
  private:
   std::int32_t build(std::int32_t begin, std::int32_t end);
@@ -60,7 +68,8 @@ class PositionTree {
 ///                    \   /            o  o    box: may be seen, so look at its halves
 ///
 /// Neighbouring points are mostly hidden by the same triangles and seen from the same positions, so
-/// those are tried first; this changes the time and never the answer. One search a thread.
+/// those are tried first, down to the triangle that hid a position last; this changes the time and
+/// never the answer. One search a thread.
 class PositionSearch {
  public:
   /// @param range_max_m positions farther away see nothing
@@ -72,11 +81,11 @@ class PositionSearch {
   bool sees(const Eigen::Vector3d& point_m);
 
  private:
-  /// What hid all of a node from the last point for which something did.
-  struct Memory {
-    std::optional<std::uint32_t> surface;  ///< a triangle of it
-    std::vector<std::uint32_t> together;   ///< triangles of a union
-    std::uint8_t unclear = 0;  ///< points since a union was last tried and not clear, if it was not
+  /// The union that hid all of a node from the last point for which one did.
+  struct UnionMemory {
+    std::vector<std::uint32_t> triangles;
+    std::uint8_t skip = 0;     ///< points for which a union is not tried
+    std::uint8_t unclear = 0;  ///< of the unions tried last, those that were not clear in a row
   };
   /// What a ray to a position has met already, handed down so that it is cast once.
   struct Blocked {
@@ -84,17 +93,21 @@ class PositionSearch {
     std::uint32_t triangle;
   };
 
+  std::optional<std::uint32_t> hider_of(std::int32_t position);
   bool position_sees(std::int32_t position);
   bool node_sees(std::int32_t at, std::optional<Blocked> known);
   std::optional<bool> union_sees(std::int32_t at);
-  bool sees_in_piece(std::int32_t at, const SpacePiece& piece);
+  bool sees_in_piece(std::int32_t at, SpacePiece& piece);
 
   const Scene* scene_;
   const PositionTree* tree_;
   double range_max_m_;
   SurfaceShadow surface_;
   ShadowUnion union_;
-  std::vector<Memory> memory_;  ///< by node
+  // What hid something from the last point for which it did.
+  std::vector<std::uint32_t> hider_;       ///< by position: a triangle, or kNone
+  std::vector<std::uint32_t> node_hider_;  ///< by node: a triangle of the surface, or kNone
+  std::unordered_map<std::int32_t, UnionMemory> unions_;  ///< by node, if large; looked up only
   std::int32_t last_seen_from_ = 0;
   std::vector<SpacePiece> open_;
   int casts_left_ = 0;

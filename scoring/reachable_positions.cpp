@@ -1,13 +1,15 @@
 #include "scoring/reachable_positions.h"
 
 #include <algorithm>
+#include <array>
+#include <bitset>
 #include <cmath>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <tuple>
 #include <unordered_map>
-#include <unordered_set>
 
 #include "scoring/coverage_unknown.h"
 
@@ -36,7 +38,8 @@ void for_each_node(const Node& min, const Node& max, const Visit& visit) {
   }
 }
 
-/// The lattice over a scene; asks for the clearance of each point once.
+/// The lattice over a scene; asks for the clearance of each point once. What is known of its points
+/// is kept in blocks of 8 x 8 x 8, as free space comes in rooms and not in single points.
 class Lattice {
  public:
   Lattice(const Scene& scene, const ReachParameters& parameters)
@@ -62,23 +65,56 @@ class Lattice {
     return scene_->clearance_m(a_m, b_m, parameters_->clearance_m) >= parameters_->clearance_m;
   }
 
+  bool is_reached(const Node& node) { return block_of(node).reached[place_in_block(node)]; }
+  void set_reached(const Node& node) { block_of(node).reached[place_in_block(node)] = true; }
+
  private:
+  static constexpr int kBits = 3;
+  static constexpr std::size_t kNodes = 1U << 3 * kBits;
+  struct Block {
+    std::array<double, kNodes> clearance_m;
+    std::bitset<kNodes> asked;
+    std::bitset<kNodes> reached;
+  };
+
+  static std::size_t place_in_block(const Node& node) {
+    constexpr int kMask = (1 << kBits) - 1;
+    const auto part = [&](int axis) { return static_cast<std::size_t>(node[axis] & kMask); };
+    return part(0) | part(1) << kBits | part(2) << 2 * kBits;
+  }
+  Block& block_of(const Node& node) {
+    const std::uint64_t key = key_of(Node(node.x() >> kBits, node.y() >> kBits, node.z() >> kBits));
+    if (last_ == nullptr || key != last_key_) {  // mostly the one asked for before
+      std::unique_ptr<Block>& block = blocks_[key];
+      if (!block) block = std::make_unique<Block>();
+      last_ = block.get();
+      last_key_ = key;
+    }
+    return *last_;
+  }
+
   /// Up to what joined() can use; negative outside the box.
   double clearance_m(const Node& node) {
-    const auto [known, is_new] = clearance_m_.try_emplace(key_of(node), -1.0);
-    if (is_new) {
+    Block& block = block_of(node);
+    const std::size_t place = place_in_block(node);
+    double& known_m = block.clearance_m[place];
+    if (!block.asked[place]) {
+      block.asked[place] = true;
+      known_m = -1.0;
       const Eigen::Vector3d at = position_m(node);
       const bool inside = (at.array() >= parameters_->box_min_m.array()).all() &&
                           (at.array() <= parameters_->box_max_m.array()).all();
       const double enough_m = parameters_->clearance_m + parameters_->spacing_m * std::sqrt(3.0);
-      if (inside) known->second = scene_->clearance_m(at, at, enough_m);
+      if (inside) known_m = scene_->clearance_m(at, at, enough_m);
     }
-    return known->second;
+    return known_m;
   }
 
   const Scene* scene_;
   const ReachParameters* parameters_;
-  std::unordered_map<std::uint64_t, double> clearance_m_;
+  std::unordered_map<std::uint64_t, std::unique_ptr<Block>> blocks_;  ///< looked up only
+  Block* last_ = nullptr;
+  std::uint64_t last_key_ = 0;
 };
 
 void check(const Eigen::Vector3d& start_m, const ReachParameters& parameters) {
@@ -124,13 +160,13 @@ std::vector<Eigen::Vector3d> reachable_positions(const Scene& scene, const Eigen
   const std::optional<Node> first = node_joined_by(start_m, lattice, parameters);
   if (!first) return {};
   std::vector<Node> nodes = {*first};
-  std::unordered_set<std::uint64_t> reached = {key_of(*first)};
+  lattice.set_reached(*first);
   // Breadth first; the vector grows behind the one being looked at.
   for (std::size_t at = 0; at < nodes.size() && !stop.stop_requested(); ++at) {
     const Node from = nodes[at];
     for_each_node(from - Node::Ones(), from + Node::Ones(), [&](const Node& to) {
-      if (reached.contains(key_of(to)) || !lattice.is_free(to) || !lattice.joined(from, to)) return;
-      reached.insert(key_of(to));
+      if (lattice.is_reached(to) || !lattice.is_free(to) || !lattice.joined(from, to)) return;
+      lattice.set_reached(to);
       nodes.push_back(to);
     });
     if (static_cast<std::int64_t>(nodes.size()) > parameters.most_positions) {

@@ -16,7 +16,7 @@ struct ReachParameters {
   double join_within_m = 0.25;  ///< how far from the start the lattice begins at most
   Eigen::Vector3d box_min_m = Eigen::Vector3d::Zero();  ///< workspace and lift limits
   Eigen::Vector3d box_max_m = Eigen::Vector3d::Zero();
-  std::int64_t most_positions = 4'000'000;  ///< a lattice of more is refused
+  std::int64_t most_positions = 10'000'000;  ///< a lattice of more is refused
 };
 
 /// The positions of the world's lattice that a robot can get to.

@@ -18,7 +18,7 @@ struct VisibilityParameters {
   ReachParameters reach;
   double range_max_m = 30.0;  ///< of the sensor
   double samples_per_m2 = 400.0;
-  std::int64_t most_samples = 8'000'000;  ///< of a larger surface there are fewer a square metre
+  std::int64_t most_samples = 500'000;  ///< of a larger surface there are fewer a square metre
 };
 
 /// The surface a run could see at best; what it did see is held against it.

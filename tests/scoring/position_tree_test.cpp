@@ -40,6 +40,49 @@ TEST(HiddenBy, NamesTheTriangleInTheWay) {
   EXPECT_EQ(hidden_by(scene, {0, 0, 1}, {0, 0, 2}), std::nullopt) << "its own points are seen";
 }
 
+TEST(ClearlyHides, IsNeverTrueWhereARayPasses) {
+  RandomStream random(1, 0, 0, RandomPurpose::InitialSimplex);
+  int hidden = 0;
+  int clearly = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const auto at = [&] { return random_point(random, {-2, -2, -2}, {2, 2, 2}); };
+    TriangleMesh mesh;
+    for (int corner = 0; corner < 3; ++corner) mesh.vertices_m.push_back(at().cast<float>());
+    mesh.triangles = {{0, 1, 2}};
+    const Scene scene(mesh);
+    for (int ray = 0; ray < 20; ++ray) {
+      // Half of the points on the triangle or near to it, where it is least clear.
+      const bool near = ray % 2 == 0;
+      const Eigen::Vector3d on =
+          0.5 * (mesh.corner_m(0, 0) + mesh.corner_m(0, 1)) +
+          0.5 * random.uniform() * (mesh.corner_m(0, 2) - mesh.corner_m(0, 0));
+      const Eigen::Vector3d point =
+          (near ? Eigen::Vector3d(on + 0.002 * at()) : at()).cast<float>().cast<double>();
+      const Eigen::Vector3d position = at();
+      const bool is_hidden = hidden_by(scene, point, position).has_value();
+      const bool is_clear = clearly_hides(mesh, 0, point, position);
+      ASSERT_TRUE(is_hidden || !is_clear) << i << ": " << point.transpose();
+      hidden += is_hidden ? 1 : 0;
+      clearly += is_clear ? 1 : 0;
+    }
+  }
+  EXPECT_GT(hidden, 2000);
+  EXPECT_GT(clearly, hidden * 9 / 10) << "of " << hidden;
+}
+
+TEST(ClearlyHides, LeavesTheEdgesToARay) {
+  TriangleMesh mesh;
+  mesh.vertices_m = {{-1, -1, 1}, {1, -1, 1}, {0, 2, 1}};
+  mesh.triangles = {{0, 1, 2}};
+  EXPECT_TRUE(clearly_hides(mesh, 0, {0, 0, 0}, {0, 0, 2}));
+  EXPECT_TRUE(clearly_hides(mesh, 0, {0, 0, 2}, {0, 0, 0})) << "from both sides";
+  EXPECT_FALSE(clearly_hides(mesh, 0, {0, 0, 0}, {0, 0, 0.9})) << "behind the position";
+  EXPECT_FALSE(clearly_hides(mesh, 0, {0, 0, 0}, {0, -1.99999, 2})) << "on the edge";
+  EXPECT_TRUE(clearly_hides(mesh, 0, {0, 0, 0}, {0, -1.99, 2}));
+  EXPECT_FALSE(clearly_hides(mesh, 0, {0, 0, 1}, {0, 0, 2})) << "its own points";
+  EXPECT_FALSE(clearly_hides(mesh, 0, {0, 0.5, 1}, {0, 0, 1})) << "seen edge-on";
+}
+
 TEST(PositionSearch, SeesOverAWallOnlyFromHighEnough) {
   // A wall of 1 m between x = 2 and 2.1; the point lies on the floor 1 m behind it, so from 1 m
   // before it a position must be above 2.1 m.
