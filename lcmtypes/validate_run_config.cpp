@@ -29,13 +29,13 @@ void check_scene(Checks& checks, const run_config_t& config) {
   checks.digest("scene_digest", config.scene_digest);
 }
 
-/// Whether there can be a sensor of this geometry, by what makes its rays.
-void check_rays(Checks& checks, const sensor_config_t& sensor) {
+/// Whether there can be a sensor of this geometry.
+void check_geometry(Checks& checks, const sensor_config_t& sensor) {
   SensorParameters parameters;
   std::ranges::copy(sensor.geometry_parameter, parameters.begin());
   try {
-    make_ray_table(make_sensor(static_cast<SensorKind>(sensor.geometry), sensor.columns,
-                               sensor.rows, parameters));
+    nextview::check_sensor(make_sensor(static_cast<SensorKind>(sensor.geometry), sensor.columns,
+                                       sensor.rows, parameters));
   } catch (const std::invalid_argument& error) {
     checks.require(false, error.what());
   }
@@ -47,7 +47,7 @@ void check_sensor(Checks& checks, const sensor_config_t& sensor) {
                      " is not 0, 1 or 2: tilted line scan, spherical, line striper");
   checks.within(bounds::kColumns, sensor.columns);
   checks.within(bounds::kRows, sensor.rows);
-  if (checks.reason().empty()) check_rays(checks, sensor);
+  if (checks.reason().empty()) check_geometry(checks, sensor);
   checks.within(bounds::kRangeMin, sensor.range_min_m);
   checks.within(bounds::kRangeMax, sensor.range_max_m);
   checks.require(sensor.range_min_m < sensor.range_max_m, "range_min_m is not below range_max_m");

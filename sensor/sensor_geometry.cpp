@@ -29,6 +29,23 @@ void check_aperture(const char* name, double angle_rad, double most_rad) {
       " degrees is not above 0 and below " + (most_rad < 2.0 * kHalfTurn ? "180" : "or at 360"));
 }
 
+void check(const TiltedLineScan& sensor) {
+  check_raster(sensor.columns, sensor.rows);
+  check_aperture("horizontal aperture", sensor.horizontal_aperture_rad, kHalfTurn);
+  check_aperture("vertical aperture", sensor.vertical_aperture_rad, kHalfTurn);
+}
+void check(const SphericalScanner& sensor) {
+  check_raster(sensor.columns, sensor.rows);
+  check_aperture("horizontal aperture", sensor.horizontal_aperture_rad, 2.0 * kHalfTurn);
+  check_aperture("vertical aperture", sensor.vertical_aperture_rad, kHalfTurn);
+}
+void check(const LineStriper& sensor) {
+  check_raster(sensor.columns, sensor.rows);
+  check_aperture("sweep", sensor.sweep_rad, kHalfTurn);
+  check_aperture("vertical aperture", sensor.vertical_aperture_rad, kHalfTurn);
+  bounds::kBaseline.require(sensor.baseline_m);
+}
+
 // The angles of an axis, as its sines and cosines.
 struct Axis {
   void add(double angle) {
@@ -75,18 +92,14 @@ TiltedLineScan TiltedLineScan::with_aperture(int columns, int rows,
 }
 
 RayTable make_ray_table(const TiltedLineScan& sensor) {
-  check_raster(sensor.columns, sensor.rows);
-  check_aperture("horizontal aperture", sensor.horizontal_aperture_rad, kHalfTurn);
-  check_aperture("vertical aperture", sensor.vertical_aperture_rad, kHalfTurn);
+  check(sensor);
   const Axis alpha = even_angles(sensor.columns, sensor.horizontal_aperture_rad);
   const Axis beta = even_angles(sensor.rows, sensor.vertical_aperture_rad);
   return {alpha.sines, alpha.cosines, beta.sines, beta.cosines, SensorKind::TiltedLineScan};
 }
 
 RayTable make_ray_table(const SphericalScanner& sensor) {
-  check_raster(sensor.columns, sensor.rows);
-  check_aperture("horizontal aperture", sensor.horizontal_aperture_rad, 2.0 * kHalfTurn);
-  check_aperture("vertical aperture", sensor.vertical_aperture_rad, kHalfTurn);
+  check(sensor);
   const double spacing = std::min(sensor.horizontal_aperture_rad / (sensor.columns - 1),
                                   2.0 * kHalfTurn / sensor.columns);
   Axis phi;
@@ -96,16 +109,17 @@ RayTable make_ray_table(const SphericalScanner& sensor) {
 }
 
 RayTable make_ray_table(const LineStriper& sensor) {
-  check_raster(sensor.columns, sensor.rows);
-  check_aperture("sweep", sensor.sweep_rad, kHalfTurn);
-  check_aperture("vertical aperture", sensor.vertical_aperture_rad, kHalfTurn);
-  bounds::kBaseline.require(sensor.baseline_m);
+  check(sensor);
   const double highest = std::tan(0.5 * sensor.vertical_aperture_rad);
   Axis theta;
   for (int v = 0; v < sensor.rows; ++v) {
     theta.add(std::atan(highest * (1.0 - 2.0 * v / (sensor.rows - 1))));
   }
   return upright(SensorKind::LineStriper, even_angles(sensor.columns, sensor.sweep_rad), theta);
+}
+
+void check_sensor(const SensorGeometry& sensor) {
+  std::visit([](const auto& of) { check(of); }, sensor);
 }
 
 SensorGeometry with_raster(SensorGeometry sensor, int columns, int rows) {

@@ -14,6 +14,9 @@ using SensorGeometry = std::variant<TiltedLineScan, SphericalScanner, LineStripe
 
 /// The same sensor with other numbers of pixels over the same apertures.
 SensorGeometry with_raster(SensorGeometry sensor, int columns, int rows);
+/// Whether there can be such a sensor, without making its rays.
+/// @throws std::invalid_argument saying why not, as make_ray_table does
+void check_sensor(const SensorGeometry& sensor);
 int columns_of(const SensorGeometry& sensor);  ///< of its picture
 int rows_of(const SensorGeometry& sensor);
 

@@ -183,12 +183,15 @@ TEST(Trajectory, HasAPoseOfEveryViewInCsvAndTum) {
   }
 }
 
-/// The log alone gives the table that the run has written, but for the CAD model's column.
+/// The log alone gives the table that the run has written, but for the CAD model's columns.
 TEST(Views, AreThoseOfTheRun) {
   const TemporaryFolder folder;
   ASSERT_EQ(run_views(folder / "run", 4, {"--no-coverage"}).status, 0);
   const auto ours = rows_of(exported(folder, "views.csv", folder / "run"), ',');
-  EXPECT_EQ(ours, rows_of(folder / "run" / "views.csv", ','));
+  auto of_the_run = rows_of(folder / "run" / "views.csv", ',');
+  ASSERT_EQ(of_the_run.front().back(), "surface_precision");
+  for (std::size_t i = 1; i < of_the_run.size(); ++i) of_the_run[i].back().clear();
+  EXPECT_EQ(ours, of_the_run);
   EXPECT_EQ(ours.size(), 5U);
 }
 
