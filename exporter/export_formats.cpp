@@ -114,7 +114,8 @@ std::vector<ExportFormat> make_formats() {
                                     write_poses_tum(out, poses_of(run));
                                   }));
   formats.push_back(stream_format(
-      "views.csv", "the run's table without surface_coverage and surface_precision, which need the CAD model",
+      "views.csv",
+      "the run's table without surface_coverage and surface_precision, which need the CAD model",
       [](RecoveredRun& run, const ExportOptions& options, std::ostream& out) {
         write_views_of(run, options, out);
       }));
