@@ -382,8 +382,8 @@ class Viewer {
     // Rows: to the right, up, and towards the eye.
     const right = [-sa, ca, 0], up = [-se * ca, -se * sa, ce], back = [ce * ca, ce * sa, se];
     const aspect = this.canvas.width / Math.max(this.canvas.height, 1);
-    const zoom = 2.6;  // 1 / tan of half the opening
-    const away = this.radius * 2.3 * distance / Math.min(1, aspect);
+    const zoom = 3.8;  // 1 / tan of half the opening
+    const away = this.radius * 3.6 * distance / Math.min(1, aspect);
     const near = away * 0.01, far = away + 4 * this.radius;
     const a = (far + near) / (near - far), b = 2 * far * near / (near - far);
     const columns = [0, 1, 2].map((axis) => [zoom / aspect * right[axis], zoom * up[axis], a * back[axis], -back[axis]]);
