@@ -82,6 +82,7 @@ void SurfaceStrategy::begin_with(const KnownSpace& space) {
   in_vain_.assign(space.field().size(), 0);
   aimed_at_.clear();
   refused_m_.clear();
+  candidates_.begin_with(known(space));
 }
 
 void SurfaceStrategy::follow_map(const KnownSpace& space, int view) {
@@ -95,7 +96,7 @@ void SurfaceStrategy::follow_map(const KnownSpace& space, int view) {
     changed = clear_->update(map, changed_slots_);
     if (grown_) grown_->update(map, changed);
   }
-  candidates_.begin_view(view, known(space));
+  candidates_.begin_view(view);
   const auto note = [&](std::span<const std::uint32_t> slots) {
     std::vector<std::uint32_t> offsets;
     for (const std::uint32_t slot : slots) {

@@ -19,13 +19,14 @@ bool PositionLattice::holds(const VoxelIndex& voxel) const {
   return from[0] % spacing == 0 && from[1] % spacing == 0 && from[2] % spacing == 0;
 }
 
-void ViewCandidates::begin_view(int view, const SurfaceGain::Known& known) {
+void ViewCandidates::begin_with(const SurfaceGain::Known& known) {
+  changed_in_.assign(known.field.size(), 0);
+  judgements_.clear();
+}
+
+void ViewCandidates::begin_view(int view) {
   view_ = view;
   judged_.clear();
-  if (changed_in_.size() != known.field.size()) {
-    changed_in_.assign(known.field.size(), 0);
-    judgements_.clear();
-  }
 }
 
 void ViewCandidates::offsets_changed(const SurfaceGain::Known& known,

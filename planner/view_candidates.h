@@ -49,8 +49,10 @@ class ViewCandidates {
   ViewCandidates(SurfaceGain& gain, double path_cost_per_m)
       : gain_(gain), path_cost_per_m_(path_cost_per_m) {}
 
+  /// Forgets everything: offsets mean other voxels from now on.
+  void begin_with(const SurfaceGain::Known& known);
   /// To be called before each decision. `view` counts them, from 1.
-  void begin_view(int view, const SurfaceGain::Known& known);
+  void begin_view(int view);
   /// What is seen of the voxels at these offsets has changed.
   void offsets_changed(const SurfaceGain::Known& known, std::span<const std::uint32_t> offsets);
 

@@ -80,10 +80,12 @@ TEST(ViewCandidates, FindWhatIsOffTheLatticeWhereverItIs) {
   const VoxelIndex present = room.clear->grid().voxel_of(room.kStart_m);
   const PositionLattice lattice(room.paths, present, {0, 1, 0}, 3);
   ViewCandidates every(gain, 0.1);
-  every.begin_view(1, known);
+  every.begin_with(known);
+  every.begin_view(1);
   const double most = every.most_valuable(known, room.paths, room.paths.reached()).value;
   ViewCandidates lazy(gain, 0.1);
-  lazy.begin_view(1, known);
+  lazy.begin_with(known);
+  lazy.begin_view(1);
   const double on_lattice = lazy.most_valuable(known, room.paths, lattice.voxels).value;
   ASSERT_GT(on_lattice, 0.0);
   ASSERT_LT(on_lattice, most);
