@@ -276,6 +276,13 @@ TEST(UnseenBoundary, SaysFromWhereWhatIsLeftCouldBeSeen) {
   const ClearSpace space(map, parameters);
   ShortestPaths paths;
   paths.find(space, map, {1.2, 0.7, 0.7}, 0.3);
+  const std::vector<UnseenVoxel> unseen = unseen_voxels(map, space, paths, 10.0);
+  ASSERT_EQ(unseen.size(), 2u);
+  EXPECT_EQ(unseen[0].voxel, VoxelIndex(5, 1, 5));
+  EXPECT_EQ(unseen[0].from, UnseenFrom::InView);
+  EXPECT_EQ(unseen[1].voxel, VoxelIndex(45, 1, 5));
+  EXPECT_EQ(unseen[1].from, UnseenFrom::NoPath);
+  EXPECT_EQ(unseen[1].empty_faces, 1);
   const UnseenBoundary boundary = unseen_boundary(map, space, paths, 10.0);
   EXPECT_NEAR(boundary.in_view_m2, 0.01, 1e-9);
   EXPECT_NEAR(boundary.no_path_m2, 0.01, 1e-9);
