@@ -35,9 +35,10 @@ void add_scene_options(CLI::App& app, RunOptions& options) {
   app.add_option("SCENE", options.scene,
                  "boxes, columns, another folder of scenes/, or a CAD file of any format assimp "
                  "reads (with --start); default: boxes");
-  app.add_option(
-         "--start", options.start_m,
-         "Where the sensor starts: X Y Z in metres, world frame; default: as the scene says")
+  app.add_option("--start", options.start_m,
+                 "Where the sensor starts: X Y Z in metres, world frame, that of the CAD file even "
+                 "where it "
+                 "lies far from its origin; default: as the scene says")
       ->expected(3)
       ->check(number_within(bounds::kPosition))
       ->group(group);

@@ -42,18 +42,23 @@ SceneOptions given_options(const RunOptions& options) {
   return given;
 }
 
+/// The user's start is in the file's frame, the run's and its bounds are in the world's.
 void fill_start(run_config_t& config, const RunOptions& options, const SceneDescription& scene,
                 const Eigen::AlignedBox3d& bounds) {
+  const Eigen::Vector3d origin_in_file_m(config.scene.origin_in_file_m);
   std::optional<Eigen::Vector3d> start_m = scene.start_m;
   if (!options.start_m.empty()) start_m = Eigen::Vector3d(options.start_m.data());
   if (!start_m) {
+    const Eigen::Vector3d min = bounds.min() + origin_in_file_m;
+    const Eigen::Vector3d max = bounds.max() + origin_in_file_m;
     throw SetupError(scene.file.string() + " says no start position: give --start X Y Z, inside (" +
-                     two_decimals(bounds.min().x()) + " .. " + two_decimals(bounds.max().x()) +
-                     ", " + two_decimals(bounds.min().y()) + " .. " +
-                     two_decimals(bounds.max().y()) + ", " + two_decimals(bounds.min().z()) +
-                     " .. " + two_decimals(bounds.max().z()) + ") m");
+                     two_decimals(min.x()) + " .. " + two_decimals(max.x()) + ", " +
+                     two_decimals(min.y()) + " .. " + two_decimals(max.y()) + ", " +
+                     two_decimals(min.z()) + " .. " + two_decimals(max.z()) + ") m");
   }
-  for (int axis = 0; axis < 3; ++axis) config.base.start_m[axis] = (*start_m)[axis];
+  for (int axis = 0; axis < 3; ++axis) {
+    config.base.start_m[axis] = (*start_m)[axis] - origin_in_file_m[axis];
+  }
   config.base.start_pan_rad = scene.start_pan_rad.value_or(0.0);
   if (options.start_pan_deg) config.base.start_pan_rad = *options.start_pan_deg * kRadPerDegree;
   config.base.start_tilt_rad = options.start_tilt_deg * kRadPerDegree;
@@ -201,6 +206,15 @@ RunSetup prepare_in_scene(const RunOptions& options) {
   config.scene.unit_m = description.options.unit_m.value_or(0.0);
   if (description.options.up) config.scene_up = name_of(*description.options.up);
   config.scene_digest = mesh_digest(mesh);
+  for (int axis = 0; axis < 3; ++axis) {
+    config.scene.origin_in_file_m[axis] = mesh.origin_in_file_m[axis];
+  }
+  if (!mesh.origin_in_file_m.isZero(0.0)) {
+    setup.warnings.push_back(
+        "the model lies far from its origin: the run's positions are the file's less (" +
+        two_decimals(mesh.origin_in_file_m.x()) + ", " + two_decimals(mesh.origin_in_file_m.y()) +
+        ", " + two_decimals(mesh.origin_in_file_m.z()) + ") m; --start is the file's own");
+  }
   fill_rest(config, options, description, bounds);
 
   setup.scene = std::make_shared<const Scene>(std::move(mesh));
