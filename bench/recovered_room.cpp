@@ -62,10 +62,11 @@ BenchScene load_bench_scene(const std::string& name) {
   const std::filesystem::path shared = source / ".." / "shared" / "scenes";
   const SceneDescription description = find_scene(
       name, std::filesystem::exists(source / "scenes" / name) ? source / "scenes" : shared);
+  TriangleMesh mesh = load_mesh(description.file, description.options);
   SensorPose start;
-  start.position_m = description.start_m.value();
+  start.position_m = description.start_m.value() - mesh.origin_in_file_m;
   start.pan_rad = description.start_pan_rad.value_or(0.0);
-  return {name, Scene(load_mesh(description.file, description.options)), start};
+  return {name, Scene(std::move(mesh)), start};
 }
 
 MapWindow window_around(const TriangleMesh& mesh, double voxel_size_m) {

@@ -13,9 +13,7 @@ namespace {
 
 void check_scene(Checks& checks, const run_config_t& config) {
   checks.not_negative("unit_m", config.scene.unit_m);  // 0: as the file says
-  for (const double offset_m : config.scene.origin_in_file_m) {
-    checks.neutral("origin_in_file_m", offset_m);
-  }
+  checks.within(bounds::kPosition, config.scene.origin_in_file_m);
   checks.within("has_scene", config.has_scene, 0, 1);
   if (config.has_scene == 0) {
     checks.require(config.scene_file.empty() && config.scene_digest.empty(),

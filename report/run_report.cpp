@@ -225,6 +225,7 @@ void write_summary(std::ostream& out, const FinishedRun& run) {
   }
   json["scene_file"] = run.config.scene_file;
   json["scene_digest"] = run.config.scene_digest;
+  json["scene_origin_in_file_m"] = run.config.scene.origin_in_file_m;
   json["run"] = run.config.run;
   json["lcm_url"] = run.lcm_url;
   json["versions"] = {{"nextview", run.config.program_version},

@@ -58,8 +58,9 @@ void add_scene_options(CLI::App& app, RunOptions& options) {
                  "name and options; default: boxes");
   app.add_option_function<std::vector<std::string>>(
          "--start", [&options](const auto& given) { take_start(given, options); },
-         "Where the sensor starts: X Y Z in metres, world frame, or auto: where it sees most; "
-         "default: as the scene says")
+         "Where the sensor starts: X Y Z in metres, world frame, that of the CAD file even where "
+         "it "
+         "lies far from its origin; or auto: where it sees most; default: as the scene says")
       ->expected(1, 3)
       ->type_name("X Y Z | auto")
       ->group(group);

@@ -39,16 +39,20 @@ SceneOptions given_options(const RunOptions& options) {
   return given;
 }
 
-std::string as_option(const Eigen::Vector3d& start_m) {
+/// Of a place in the world, as a user would type it: in the frame of the scene's file.
+std::string as_option(const Eigen::Vector3d& place_m, const Scene& scene) {
+  const Eigen::Vector3d start_m = place_m + scene.mesh().origin_in_file_m;
   return fmt::format("--start {:.2f} {:.2f} {:.2f}", start_m.x(), start_m.y(), start_m.z());
 }
 
-/// Where the run is to start: as the command line says, else the scene, else nowhere.
+/// Where in the world the run is to start: as the command line says, else the scene, both in the
+/// file's frame; else nowhere.
 /// @throws SetupError naming places that would do
 Eigen::Vector3d start_in_scene(const RunOptions& options, const SceneDescription& description,
                                const Scene& scene) {
-  if (!options.start_m.empty()) return Eigen::Vector3d(options.start_m.data());
-  if (description.start_m && !options.start_auto) return *description.start_m;
+  const Eigen::Vector3d& origin_m = scene.mesh().origin_in_file_m;
+  if (!options.start_m.empty()) return Eigen::Vector3d(options.start_m.data()) - origin_m;
+  if (description.start_m && !options.start_auto) return *description.start_m - origin_m;
   constexpr std::size_t kNamed = 3;
   const std::vector<Eigen::Vector3d> places =
       standing_places(scene, {.clearance_m = options.clearance_m}, kNamed);
@@ -60,7 +64,7 @@ Eigen::Vector3d start_in_scene(const RunOptions& options, const SceneDescription
   }
   if (options.start_auto) return places.front();
   std::string named;
-  for (const Eigen::Vector3d& place : places) named += as_option(place) + ", ";
+  for (const Eigen::Vector3d& place : places) named += as_option(place, scene) + ", ";
   throw SetupError(description.file.string() + " says no start position. These would do: " + named +
                    "and --start auto takes the first");
 }
@@ -262,9 +266,20 @@ RunSetup prepare_in_scene(const RunOptions& options) {
   config.scene.unit_m = description.options.unit_m.value_or(0.0);
   if (description.options.up) config.scene_up = name_of(*description.options.up);
   config.scene_digest = mesh_digest(mesh);
+  for (int axis = 0; axis < 3; ++axis) {
+    config.scene.origin_in_file_m[axis] = mesh.origin_in_file_m[axis];
+  }
+  if (!mesh.origin_in_file_m.isZero(0.0)) {
+    setup.warnings.push_back(fmt::format(
+        "the model lies far from its origin: the run's positions are the file's less "
+        "({:.2f}, {:.2f}, {:.2f}) m; --start is the file's own",
+        mesh.origin_in_file_m.x(), mesh.origin_in_file_m.y(), mesh.origin_in_file_m.z()));
+  }
   setup.scene = std::make_shared<const Scene>(std::move(mesh));
   const Eigen::Vector3d start_m = start_in_scene(options, description, *setup.scene);
-  if (options.start_auto) setup.notes.push_back("starts where it sees most: " + as_option(start_m));
+  if (options.start_auto) {
+    setup.notes.push_back("starts where it sees most: " + as_option(start_m, *setup.scene));
+  }
   const double floor_m =
       fill_rest(config, options, description, start_m, setup.scene.get(), bounds);
   check_start(config, floor_m, *setup.scene);

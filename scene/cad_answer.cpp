@@ -17,6 +17,7 @@ struct Heading {
   Tag tag;
   std::uint64_t vertices;   ///< or the characters of why there is no mesh
   std::uint64_t triangles;  ///< or 0
+  std::array<double, 3> origin_in_file_m;
 };
 
 template <class Container>
@@ -43,7 +44,8 @@ std::uint64_t size_of(std::FILE* file) {
 }
 
 bool is_sound(const TriangleMesh& mesh) {
-  return std::all_of(mesh.vertices_m.begin(), mesh.vertices_m.end(),
+  return mesh.origin_in_file_m.allFinite() &&
+         std::all_of(mesh.vertices_m.begin(), mesh.vertices_m.end(),
                      [](const Eigen::Vector3f& vertex_m) { return vertex_m.allFinite(); }) &&
          std::all_of(mesh.triangles.begin(), mesh.triangles.end(), [&mesh](const auto& triangle) {
            return *std::max_element(triangle.begin(), triangle.end()) < mesh.vertices_m.size();
@@ -53,13 +55,17 @@ bool is_sound(const TriangleMesh& mesh) {
 }  // namespace
 
 bool write_answer(std::FILE* file, const TriangleMesh& mesh) {
-  return write_heading(file, {kMesh, mesh.vertices_m.size(), mesh.triangles.size()}) &&
+  return write_heading(file, {kMesh,
+                              mesh.vertices_m.size(),
+                              mesh.triangles.size(),
+                              {mesh.origin_in_file_m.x(), mesh.origin_in_file_m.y(),
+                               mesh.origin_in_file_m.z()}}) &&
          write_all(file, mesh.vertices_m) && write_all(file, mesh.triangles) &&
          std::fflush(file) == 0;
 }
 
 bool write_answer(std::FILE* file, const std::string& why_not) {
-  return write_heading(file, {kWhyNot, why_not.size(), 0}) && write_all(file, why_not) &&
+  return write_heading(file, {kWhyNot, why_not.size(), 0, {}}) && write_all(file, why_not) &&
          std::fflush(file) == 0;
 }
 
@@ -82,6 +88,7 @@ std::optional<CadAnswer> take_answer(std::FILE* file) {
                                           heading.triangles * sizeof(mesh.triangles[0])) {
     return std::nullopt;
   }
+  mesh.origin_in_file_m = Eigen::Vector3d(heading.origin_in_file_m.data());
   mesh.vertices_m.resize(heading.vertices);
   mesh.triangles.resize(heading.triangles);
   if (!read_all(file, mesh.vertices_m) || !read_all(file, mesh.triangles) || !is_sound(mesh)) {

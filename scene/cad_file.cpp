@@ -9,9 +9,15 @@
 #include <assimp/Importer.hpp>
 #include <bit>
 #include <cmath>
+#include <fstream>
+#include <iterator>
+#include <optional>
 #include <string>
 #include <unordered_map>
 #include <unordered_set>
+#include <utility>
+
+#include "scene/vertex_shift.h"
 
 namespace nextview {
 namespace {
@@ -20,6 +26,8 @@ namespace {
 struct Shapes {
   std::vector<Eigen::Vector3f> vertices_m;
   std::vector<std::uint32_t> corners;
+  Eigen::AlignedBox3d bounds_m;  // of what is finite
+  double farthest_m = 0.0;       // of a coordinate from zero, in the world or in a node of the file
 };
 
 Eigen::Matrix4d matrix(const aiMatrix4x4& m) {
@@ -75,20 +83,9 @@ Eigen::Matrix4d world_from_root(const aiScene& scene, const std::string& reader,
   return z_up_from(options.up.value_or(up_of_format)) * scaling(options.unit_m.value_or(1.0));
 }
 
-// Coordinates as assimp has them are floats, which up to here tell millimetres apart. Beyond, the
-// model has lost detail before any code of ours sees it, so that no shift could bring it back.
+// Up to here floats, which is what Debian's assimp makes of every coordinate, tell millimetres
+// apart.
 constexpr double kFarthest_m = 8192.0;
-
-void check_range(const Eigen::Vector3d& given_m, const Eigen::Vector3d& world_m,
-                 const std::filesystem::path& file) {
-  const double far_m = std::max(given_m.cwiseAbs().maxCoeff(), world_m.cwiseAbs().maxCoeff());
-  if (!std::isfinite(far_m) || far_m <= kFarthest_m) return;  // not finite: said of the triangle
-  throw SceneError(file.string() + ": a vertex lies " + std::to_string(std::llround(far_m)) +
-                   " m from the origin, where coordinates are no longer exact to a millimetre (" +
-                   std::to_string(std::llround(kFarthest_m)) +
-                   " m at most): move the model to the origin in the program it comes from and "
-                   "export it again, or give the right --unit");
-}
 
 void add_mesh(const aiMesh& mesh, const Eigen::Matrix4d& world_from_mesh,
               const std::filesystem::path& file, Shapes& shapes) {
@@ -98,7 +95,11 @@ void add_mesh(const aiMesh& mesh, const Eigen::Matrix4d& world_from_mesh,
     const aiVector3D& p = mesh.mVertices[i];
     const Eigen::Vector3d given(p.x, p.y, p.z);
     const Eigen::Vector4d vertex_m = world_from_mesh * given.homogeneous();
-    check_range(scale * given, vertex_m.head<3>(), file);
+    if (vertex_m.allFinite()) {  // else it is said of the triangle
+      shapes.bounds_m.extend(vertex_m.head<3>());
+      shapes.farthest_m = std::max({shapes.farthest_m, scale * given.cwiseAbs().maxCoeff(),
+                                    vertex_m.head<3>().cwiseAbs().maxCoeff()});
+    }
     shapes.vertices_m.push_back(vertex_m.head<3>().cast<float>());
   }
   for (unsigned int i = 0; i < mesh.mNumFaces; ++i) {
@@ -206,6 +207,78 @@ TriangleMesh tidy_mesh(const Shapes& shapes, const std::filesystem::path& file) 
   return mesh;
 }
 
+// A CAD file in the hands of assimp.
+class CadFile {
+ public:
+  CadFile(std::filesystem::path file, const SceneOptions& options)
+      : file_(std::move(file)), options_(options) {
+    importer_.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, options.up.has_value());
+    // Without this a file of bones alone would be given a body of assimp's own making.
+    importer_.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
+  }
+
+  Shapes read() { return shapes_of(importer_.ReadFile(file_.string(), aiProcess_Triangulate)); }
+
+  // Read again, with the world's origin elsewhere in the file's frame.
+  Shapes read_around(const Eigen::Vector3d& origin_in_file_m, double farthest_m) {
+    const std::string reader = reader_name(importer_);
+    // These two have no nodes that are turned or scaled, so what is between file and world is
+    // known.
+    const Eigen::Vector3d shift =
+        (z_up_from(options_.up.value_or(UpAxis::Z)).topLeftCorner<3, 3>()).transpose() *
+        origin_in_file_m / options_.unit_m.value_or(1.0);
+    std::optional<std::string> shifted;
+    if (reader.starts_with("Wavefront")) shifted = shifted_obj(bytes(), shift);
+    if (reader.starts_with("Stanford")) shifted = shifted_ply(bytes(), shift);
+    if (!shifted) {
+      throw SceneError(
+          file_.string() + ": a vertex lies " + std::to_string(std::llround(farthest_m)) +
+          " m from the origin, where floats, in which this file or assimp holds it, are no "
+          "longer exact to a millimetre (" +
+          std::to_string(std::llround(kFarthest_m)) +
+          " m at most): export it as OBJ or PLY with all digits, which are read in double, move "
+          "it to the origin in the program it comes from, or give the right --unit");
+    }
+    return shapes_of(importer_.ReadFileFromMemory(shifted->data(), shifted->size(),
+                                                  aiProcess_Triangulate,
+                                                  reader.starts_with("Stanford") ? "ply" : "obj"));
+  }
+
+ private:
+  Shapes shapes_of(const aiScene* scene) const {
+    if (scene == nullptr || scene->mRootNode == nullptr) {
+      throw SceneError(file_.string() + ": cannot be read as a CAD file (" +
+                       importer_.GetErrorString() +
+                       "); convert it to a format assimp reads, for example OBJ, PLY, STL, COLLADA "
+                       "or glTF");
+    }
+    Shapes shapes;
+    add_node(*scene, *scene->mRootNode, world_from_root(*scene, reader_name(importer_), options_),
+             file_, shapes);
+    return shapes;
+  }
+
+  std::string bytes() const {
+    std::ifstream stream(file_, std::ios::binary);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+
+  std::filesystem::path file_;
+  SceneOptions options_;
+  Assimp::Importer importer_;
+};
+
+// Whole kilometres, so that what a user knows of the file's coordinates can still be recognised;
+// along an axis that needs none, a height say, zero.
+Eigen::Vector3d origin_for(const Eigen::AlignedBox3d& bounds_m) {
+  Eigen::Vector3d origin_m = Eigen::Vector3d::Zero();
+  for (int axis = 0; axis < 3; ++axis) {
+    const double farthest_m = std::max(-bounds_m.min()[axis], bounds_m.max()[axis]);
+    if (farthest_m > kFarthest_m) origin_m[axis] = std::floor(bounds_m.min()[axis] / 1e3) * 1e3;
+  }
+  return origin_m;
+}
+
 }  // namespace
 
 TriangleMesh read_cad_file(const std::filesystem::path& file, const SceneOptions& options) {
@@ -217,22 +290,21 @@ TriangleMesh read_cad_file(const std::filesystem::path& file, const SceneOptions
     throw SceneError(file.string() + ": is a folder; name a CAD file in it");
   }
 
-  Assimp::Importer importer;
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, options.up.has_value());
-  // Without this a file of bones alone would be given a body of assimp's own making.
-  importer.SetPropertyBool(AI_CONFIG_IMPORT_NO_SKELETON_MESHES, true);
-  const aiScene* scene = importer.ReadFile(file.string(), aiProcess_Triangulate);
-  if (scene == nullptr || scene->mRootNode == nullptr) {
-    throw SceneError(file.string() + ": cannot be read as a CAD file (" +
-                     importer.GetErrorString() +
-                     "); convert it to a format assimp reads, for example OBJ, PLY, STL, COLLADA "
-                     "or glTF");
+  CadFile cad_file(file, options);
+  Shapes shapes = cad_file.read();
+  Eigen::Vector3d origin_in_file_m = Eigen::Vector3d::Zero();
+  if (shapes.farthest_m > kFarthest_m) {
+    const double span_m = shapes.bounds_m.sizes().maxCoeff();
+    if (span_m > kFarthest_m) {
+      throw SceneError(file.string() + ": is " + std::to_string(std::llround(span_m)) +
+                       " m long, where " + std::to_string(std::llround(kFarthest_m)) +
+                       " m are the most: give the right --unit, or export a part of it");
+    }
+    origin_in_file_m = origin_for(shapes.bounds_m);
+    shapes = cad_file.read_around(origin_in_file_m, shapes.farthest_m);
   }
-
-  Shapes shapes;
-  add_node(*scene, *scene->mRootNode, world_from_root(*scene, reader_name(importer), options), file,
-           shapes);
   TriangleMesh mesh = tidy_mesh(shapes, file);
+  mesh.origin_in_file_m = origin_in_file_m;
   if (mesh.triangles.empty()) {
     throw SceneError(file.string() +
                      ": has no triangles with an area; export the surfaces as polygons");

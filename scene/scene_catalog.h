@@ -16,7 +16,8 @@ struct SceneDescription {
   std::string name;            ///< of the scene.json, else the file's name without extension
   std::filesystem::path file;  ///< the CAD file
   SceneOptions options;        ///< for load_mesh
-  std::optional<Eigen::Vector3d> start_m;  ///< where a run starts: world frame
+  std::optional<Eigen::Vector3d>
+      start_m;  ///< where a run starts: the frame of the file, metres and z up
   std::optional<double> start_pan_rad;
   std::optional<double> surface_area_m2;  ///< of all triangles, as documented
   std::optional<std::int64_t> triangles;  ///< in the file, as documented

@@ -14,6 +14,11 @@ Scene load_scene(const run_config_t& config, const std::function<bool()>& interr
   limits.interrupted = interrupted;
   TriangleMesh mesh = load_mesh(config.scene_file, options, limits);
   const std::string digest = mesh_digest(mesh);
+  if (mesh.origin_in_file_m != Eigen::Vector3d(config.scene.origin_in_file_m)) {
+    throw SceneError(config.scene_file +
+                     ": lies elsewhere than where the run was set up for it; has "
+                     "the file changed?");
+  }
   if (digest != config.scene_digest) {
     throw SceneError(config.scene_file + ": its triangles have digest " + digest +
                      ", but the run was set up for " + config.scene_digest +

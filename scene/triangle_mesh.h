@@ -13,6 +13,9 @@ namespace nextview {
 struct TriangleMesh {
   std::vector<Eigen::Vector3f> vertices_m;
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< indices into vertices_m
+  /// Where the world's origin lies in the CAD file's frame, after unit and axis: whole kilometres,
+  /// and zero unless the file's coordinates are too large for floats.
+  Eigen::Vector3d origin_in_file_m = Eigen::Vector3d::Zero();
 
   /// Sum of the areas of all triangles, one side each.
   double area_m2() const;

@@ -320,7 +320,7 @@ TEST(Validate, RunConfig) {
       {"more evaluations than a message holds",
        [](run_config_t& m) { m.planner.max_evaluations = 2000; }},
       {"has_scene of 2", [](run_config_t& m) { m.has_scene = 2; }},
-      {"an origin nothing reads", [](run_config_t& m) { m.scene.origin_in_file_m[1] = 1.0; }},
+      {"an origin out of this world", [](run_config_t& m) { m.scene.origin_in_file_m[1] = 2e9; }},
       {"half the quality", [](run_config_t& m) { m.planner.quality_weight = 0.5; }},
       {"no rule to stop by", [](run_config_t& m) { m.planner.stop_rule = 0; }},
       {"the third rule", [](run_config_t& m) { m.planner.stop_rule = 3; }},

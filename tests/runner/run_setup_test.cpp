@@ -1,6 +1,7 @@
 #include "runner/run_setup.h"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -9,6 +10,7 @@
 #include <string>
 
 #include "lcmtypes/validate.h"
+#include "tests/scene/far_boxes.h"
 
 namespace nextview {
 namespace {
@@ -251,6 +253,38 @@ TEST(BoundCommand, IsWhatHasBeenTypedWithoutTheFolder) {
   EXPECT_EQ(command_of({"nextview_run", "--out=/tmp/x", "my flat.obj", "--start", "1", "-2", "1"}),
             "nextview_bound 'my flat.obj' --start 1 -2 1");
   EXPECT_EQ(command_of({"nextview_run", "it's.obj"}), "nextview_bound 'it'\\''s.obj'");
+}
+
+/// Where the paper's room would be on a map of the country.
+TEST(RunSetup, TakesTheStartOfAGeoreferencedSceneInTheFilesCoordinates) {
+  const std::filesystem::path file =
+      std::filesystem::temp_directory_path() /
+      ("nextview-georeferenced-" + std::to_string(::getpid()) + ".obj");
+  write_far_boxes(file, 500e3 + 100.0, 5400e3);
+  RunOptions options = boxes();
+  options.scene = file.string();
+  options.start_m = {500100.7, 5400001.0, 1.2};
+  const RunSetup setup = prepare_run(options);
+  EXPECT_EQ(check(setup.config), "");
+  EXPECT_EQ(setup.config.scene.origin_in_file_m[0], 500e3);
+  EXPECT_EQ(setup.config.scene.origin_in_file_m[1], 5400e3);
+  EXPECT_EQ(setup.config.scene.origin_in_file_m[2], 0.0);
+  EXPECT_NEAR(setup.config.base.start_m[0], 100.7, 1e-9);
+  EXPECT_NEAR(setup.config.base.start_m[1], 1.0, 1e-9);
+  EXPECT_EQ(setup.config.map.window_min[0], 999);
+  EXPECT_EQ(setup.config.map.window_size[0], 53);
+  ASSERT_EQ(setup.warnings.size(), 1U);
+  EXPECT_NE(setup.warnings[0].find("(500000.00, 5400000.00, 0.00) m"), std::string::npos)
+      << setup.warnings[0];
+
+  options.start_m.clear();
+  try {
+    prepare_run(options);
+    ADD_FAILURE() << "a start was made up";
+  } catch (const SetupError& error) {
+    EXPECT_NE(std::string(error.what()).find("--start 50010"), std::string::npos) << error.what();
+  }
+  std::filesystem::remove(file);
 }
 
 }  // namespace
