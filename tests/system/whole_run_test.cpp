@@ -97,6 +97,52 @@ TEST(WholeRun, EndsWhenNothingIsLeftAndReplays) {
   EXPECT_NE(replay.output.find("every one the same"), std::string::npos) << replay.output;
 }
 
+TEST(WholeRun, EndsOnTheBoundOnceItIsKept) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> question = {"--cache",         (folder / "cache").string(),
+                                             "--bound-spacing", "1.5",
+                                             "--voxel-size",    "0.25",
+                                             "--columns",       "24",
+                                             "--rows",          "12"};
+  const Outcome before = run_views(folder / "before", 2, question);
+  ASSERT_EQ(before.status, 0) << before.output;
+  EXPECT_NE(before.output.find("how few views it could be says: " + program_path("nextview_bound") +
+                               " --views 2 --cache "),
+            std::string::npos)
+      << before.output;
+  EXPECT_TRUE(summary_of(folder / "before").at("bounds").is_null());
+
+  std::vector<std::string> bound = {program_path("nextview_bound")};
+  bound.insert(bound.end(), question.begin(), question.end());
+  const Outcome worked_out = run_program(bound);
+  ASSERT_EQ(worked_out.status, 0) << worked_out.output;
+  EXPECT_NE(worked_out.output.find("no planner below"), std::string::npos) << worked_out.output;
+
+  const Outcome after = run_views(folder / "after", 2, question);
+  ASSERT_EQ(after.status, 0) << after.output;
+  EXPECT_NE(after.output.find("\n  95 % not reached in 2 views, greedy who knows the scene "),
+            std::string::npos)
+      << after.output;
+  const nlohmann::json bounds = summary_of(folder / "after").at("bounds");
+  ASSERT_EQ(bounds.size(), 2u);
+  EXPECT_TRUE(bounds[0].at("views").is_null());
+  EXPECT_GE(bounds[0].at("greedy_views").get<int>(), bounds[0].at("least_views").get<int>());
+  EXPECT_GT(bounds[0].at("least_views").get<int>(), 2);
+  EXPECT_GE(bounds[1].at("least_views").get<int>(), bounds[0].at("least_views").get<int>());
+}
+
+TEST(WholeRun, FallsShortOfPrecisionWithNoise) {
+  const TemporaryFolder folder;
+  const auto precision_of = [&](const std::string& noise_m) {
+    const Outcome outcome =
+        run_views(folder / noise_m, 5, {"--no-coverage", "--range-noise-m", noise_m});
+    EXPECT_EQ(outcome.status, 0) << outcome.output;
+    return summary_of(folder / noise_m).at("surface_precision").get<double>();
+  };
+  EXPECT_EQ(precision_of("0"), 1.0);
+  EXPECT_LT(precision_of("0.2"), 0.95);
+}
+
 TEST(WholeRun, WithQualityRepeatsAndReplays) {
   const TemporaryFolder folder;
   ASSERT_EQ(run_views(folder / "run", 6, {"--quality", "--range-noise-m", "0.01"}).status, 0);
