@@ -201,7 +201,7 @@ def draw_recovered(scene, runs, views, programs, out, scratch):
     for quality in sorted(first):
         run = first[quality]
         picture = scratch / f"recovered-{quality}.png"
-        program(programs, "nextview_picture", run.folder, picture, "--views", views,
+        program(programs, "nextview_picture", run.folder, picture, "--views", views, "--occupied-only",
                 "--width", 1000, "--height", 760)
         pictures.append(str(picture))
         names.append(f"\"quality {'on' if quality else 'off'}, seed {run.seed}\"")

@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <optional>
+#include <utility>
 #include <vector>
 
 #include "lcmtypes/program_version.h"
@@ -60,15 +62,18 @@ std::optional<nextview::MissedSurface> missed_at_end(const run_config_t& config,
 }
 
 void draw_run(const std::filesystem::path& folder, const std::filesystem::path& file, int views,
-              const std::string& cache, const nextview::PictureView& view) {
+              bool occupied_only, const std::string& cache, const nextview::PictureView& view) {
   const nextview::RecoveredRun run = nextview::recover_run(folder, std::nullopt, views);
   std::vector<nextview::SensorPose> poses;
   for (const auto* received : run.images) poses.push_back(received->image.pose);
   const nextview::VoxelMap& map = run.builder.map();
-  const std::vector<nextview::UnseenVoxel> unseen =
-      unseen_at_end(run.config(), run.log.record(), map, poses);
-  const nextview::DrawnRun drawn{poses, unseen,
-                                 missed_at_end(run.config(), map, poses.front().position_m, cache)};
+  std::vector<nextview::UnseenVoxel> unseen;
+  std::optional<nextview::MissedSurface> missed;
+  if (!occupied_only) {
+    unseen = unseen_at_end(run.config(), run.log.record(), map, poses);
+    missed = missed_at_end(run.config(), map, poses.front().position_m, cache);
+  }
+  const nextview::DrawnRun drawn{poses, unseen, std::move(missed)};
   write_png(recovered_picture(map, drawn, view), nextview::legend_of(map, drawn), file);
   std::cout << file.string() << ": " << poses.size() << " views" << std::endl;
 }
@@ -87,11 +92,14 @@ int main(int argc, char** argv) {
   std::string file;
   std::string cache;
   int views = std::numeric_limits<int>::max();
+  bool occupied_only = false;
   nextview::PictureView view;
   app.add_option("DIR", folder, "Folder of a run")->required()->check(CLI::ExistingDirectory);
   app.add_option("FILE", file, "PNG file to write; default DIR/recovered.png");
   app.add_option("--views", views, "Draw the map after this many views; default all")
       ->check(CLI::PositiveNumber);
+  app.add_flag("--occupied-only", occupied_only,
+               "Leave out what remains unseen, as the paper does");
   app.add_option("--cache", cache, "Where surface coverage is kept; default as of ./run");
   app.add_option("--azimuth", view.azimuth_deg, "Where to look from, degrees: 0 = +x, 90 = +y")
       ->capture_default_str();
@@ -110,7 +118,7 @@ int main(int argc, char** argv) {
     draw_run(folder,
              file.empty() ? std::filesystem::path(folder) / "recovered.png"
                           : std::filesystem::path(file),
-             views, nextview::cache_folder(cache), view);
+             views, occupied_only, nextview::cache_folder(cache), view);
   } catch (const std::exception& error) {
     std::cerr << "nextview_picture: " << error.what() << std::endl;
     return 1;
