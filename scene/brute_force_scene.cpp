@@ -43,11 +43,6 @@ std::optional<BruteForceScene::Hit> BruteForceScene::first_hit(
   return first;
 }
 
-bool BruteForceScene::segment_clear(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m) const {
-  const std::optional<Hit> hit = first_hit(a_m, b_m - a_m);
-  return !hit || hit->distance_m > 1.0;
-}
-
 double BruteForceScene::clearance_m(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m,
                                     double at_most_m) const {
   double nearest = at_most_m;

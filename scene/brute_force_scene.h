@@ -18,7 +18,6 @@ class BruteForceScene {
 
   std::optional<Hit> first_hit(const Eigen::Vector3d& origin_m,
                                const Eigen::Vector3d& direction) const;
-  bool segment_clear(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m) const;
   double clearance_m(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m,
                      double at_most_m) const;
 

@@ -203,15 +203,6 @@ std::optional<Scene::Hit> Scene::first_hit(const Eigen::Vector3d& origin_m,
   return Hit{query.ray.tfar, query.hit.primID};
 }
 
-bool Scene::segment_clear(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m) const {
-  const DenormalsOff denormals_off;
-  RTCIntersectContext context;
-  rtcInitIntersectContext(&context);
-  RTCRay ray = ray_along(a_m.cast<float>(), (b_m - a_m).cast<float>(), 1.0F);
-  rtcOccluded1(embree_->scene, &context, &ray);
-  return ray.tfar >= 0.0F;  // Embree says -inf when something is in the way
-}
-
 double Scene::clearance_m(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m,
                           double at_most_m) const {
   const DenormalsOff denormals_off;

@@ -50,10 +50,6 @@ class Scene {
   std::optional<Hit> first_hit(const Eigen::Vector3d& origin_m,
                                const Eigen::Vector3d& direction) const;
 
-  /// Whether no surface lies between a and b. A surface exactly at an end may count either way, so
-  /// keep the ends a millimetre away from surfaces.
-  bool segment_clear(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m) const;
-
   /// Distance from the segment ab to the nearest triangle, exact in double, or at_most_m (which may
   /// be infinite) when none is nearer. 0 when the segment meets a triangle.
   double clearance_m(const Eigen::Vector3d& a_m, const Eigen::Vector3d& b_m,

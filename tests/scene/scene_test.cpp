@@ -142,33 +142,6 @@ TEST(Scene, NoRayEscapesThroughTheEdgesOfOurRooms) {
   }
 }
 
-TEST(Scene, SegmentsAreClearWhereBruteForceSaysSo) {
-  RandomStream random = random_stream(4);
-  const TriangleMesh mesh = triangle_soup(random, 80);
-  const Scene scene(mesh);
-  const BruteForceScene plain(mesh);
-  int clear = 0;
-  int blocked = 0;
-  int at_an_edge = 0;
-  for (int i = 0; i < 6000; ++i) {
-    const Eigen::Vector3d a = random_point(random, 2.0);
-    const Eigen::Vector3d b = random_point(random, 2.0);
-    const double distance = plain.clearance_m(a, b, 1.0);
-    const bool expected = plain.segment_clear(a, b);
-    // A segment that only just passes, or whose end is at a surface, may count either way.
-    const bool just_passes = expected && distance < kEdge_m;
-    if (just_passes || !away_from_edges(plain, a, (b - a).normalized())) {
-      ++at_an_edge;
-      continue;
-    }
-    EXPECT_EQ(scene.segment_clear(a, b), expected) << a.transpose() << " to " << b.transpose();
-    ++(expected ? clear : blocked);
-  }
-  EXPECT_GT(clear, 1000);
-  EXPECT_GT(blocked, 1000);
-  EXPECT_LT(at_an_edge, 120);
-}
-
 TEST(Scene, ClearanceIsThatOfBruteForce) {
   RandomStream random = random_stream(5);
   int near = 0;
