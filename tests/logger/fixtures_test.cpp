@@ -4,6 +4,9 @@
 
 #include <filesystem>
 #include <fstream>
+#include <set>
+#include <string>
+#include <vector>
 
 #include "logger/replay.h"
 
@@ -12,6 +15,9 @@ namespace {
 
 constexpr const char* kFolder = NEXTVIEW_SOURCE_DIR "/tests/logger/fixtures";
 constexpr std::uintmax_t kLargest = 300 * 1000;
+
+/// Logs of planners that decided otherwise: their maps must come out the same all the same.
+const std::set<std::string> kDecidedOtherwise = {"paper-1", "surface-1"};
 
 std::vector<std::string> lines_of(const std::filesystem::path& file) {
   std::ifstream in(file);
@@ -25,7 +31,8 @@ void expect_replayed_to_its_digests(const std::filesystem::path& file) {
   RunLog log(file, std::nullopt, RangeImages::Keep);
   log.read_on();
   EXPECT_TRUE(log.dropped().empty()) << file << ": " << log.dropped().front();
-  const ReplayReport report = replay(log, {.planner = true});
+  const bool planner = !kDecidedOtherwise.contains(file.stem().string());
+  const ReplayReport report = replay(log, {.planner = planner});
   EXPECT_EQ(report.differences, std::vector<std::string>{}) << file;
   EXPECT_EQ(report.missing, std::vector<std::string>{}) << file;
 
@@ -34,7 +41,7 @@ void expect_replayed_to_its_digests(const std::filesystem::path& file) {
   const auto file_of_digests = std::filesystem::path(file).replace_extension(".digests");
   EXPECT_EQ(digests, lines_of(file_of_digests)) << file;
   EXPECT_EQ(report.views, std::ssize(digests)) << file;
-  EXPECT_EQ(report.goals, report.views - 1) << file;
+  EXPECT_EQ(report.goals, planner ? report.views - 1 : 0) << file;
 }
 
 TEST(Fixtures, AreReplayedToTheirDigests) {
@@ -44,7 +51,7 @@ TEST(Fixtures, AreReplayedToTheirDigests) {
     expect_replayed_to_its_digests(entry.path());
     ++logs;
   }
-  EXPECT_GE(logs, 2);
+  EXPECT_GE(logs, 4);
 }
 
 }  // namespace
