@@ -124,7 +124,8 @@ TEST_F(HtmlReport, OfNoLogIsRefused) {
 /// What Chromium makes of the page, at a width in pixels.
 std::string seen_by_chromium(const std::filesystem::path& file, int width) {
   const std::string command =
-      "chromium --headless --no-sandbox --use-gl=angle --use-angle=swiftshader "
+      "chromium --headless --no-sandbox --disable-dev-shm-usage --use-gl=angle "
+      "--use-angle=swiftshader "
       "--enable-unsafe-swiftshader --virtual-time-budget=4000 --window-size=" +
       std::to_string(width) + ",900 --user-data-dir='" + file.parent_path().string() +
       "/profile' --dump-dom 'file://" + file.string() + "' 2>&1";
