@@ -123,9 +123,10 @@ struct PointNormal {
 };
 
 /// The normal from w and its slopes at ray angles a, b; all zero when any of them is NaN.
-/// @param ray of the pixel
+/// @param ray of the pixel; by value, because loops that hand a reference to it on are not
+/// vectorised
 /// @param r   world_from_lines
-inline PointNormal point_normal(float w, float slope_a, float slope_b, const RayFrame<float>& ray,
+inline PointNormal point_normal(float w, float slope_a, float slope_b, RayFrame<float> ray,
                                 const float (&r)[3][3]) {
   const float across = slope_b / ray.cos_a;
   const auto [x, y, z] = ray.vector(w, slope_a, across);  // m
