@@ -7,6 +7,7 @@
 
 #include "lcmtypes/parameter_bounds.h"
 #include "lcmtypes/program_version.h"
+#include "runner/bound_command.h"
 #include "runner/scene_file.h"
 #include "scene/mesh_file.h"
 
@@ -340,30 +341,6 @@ const char* const kRunDescription =
     "best view, until there is nothing left to see. Starts sensor_sim, base_sim, mapper, planner\n"
     "and lcm-logger on a bus of their own, watches them, scores what they do against the CAD\n"
     "model, and leaves run.lcmlog, views.csv and summary.json.\n";
-
-std::string bound_command_for(int argc, char** argv) {
-  const auto quoted = [](const std::string& argument) {
-    constexpr const char* kPlain =
-        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
-    if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) {
-      return argument;
-    }
-    std::string text = "'";
-    for (const char character : argument) {
-      text += character == '\'' ? std::string("'\\''") : std::string(1, character);
-    }
-    return text + "'";
-  };
-  std::string command =
-      quoted((std::filesystem::path(argv[0]).parent_path() / "nextview_bound").string());
-  for (int i = 1; i < argc; ++i) {
-    const std::string argument = argv[i];
-    if (argument == "--out") ++i;
-    if (argument == "--out" || argument.starts_with("--out=")) continue;
-    command += " " + quoted(argument);
-  }
-  return command;
-}
 
 std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_status,
                                             const std::string& description) {

@@ -86,9 +86,6 @@ struct RunOptions {
 /// @param description what --help says first
 std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_status,
                                             const std::string& description);
-/// The command that works out the bounds a run is held against: nextview_bound in the folder of
-/// nextview_run, with what has been typed for the run, --out aside.
-std::string bound_command_for(int argc, char** argv);
 /// Of ./run.
 extern const char* const kRunDescription;
 

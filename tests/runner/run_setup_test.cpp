@@ -10,6 +10,7 @@
 #include <string>
 
 #include "lcmtypes/validate.h"
+#include "runner/bound_command.h"
 #include "tests/scene/far_boxes.h"
 
 namespace nextview {

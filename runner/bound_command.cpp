@@ -1,0 +1,33 @@
+#include "runner/bound_command.h"
+
+#include <filesystem>
+
+namespace nextview {
+
+std::string bound_command_for(int argc, char** argv) {
+  const auto quoted = [](const std::string& argument) {
+    constexpr const char* kPlain =
+        "abcdefghijklmnopqrstuvwxyzABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789_-+=.,:/@%";
+    if (!argument.empty() && argument.find_first_not_of(kPlain) == std::string::npos) {
+      return argument;
+    }
+    std::string text(1, '\'');
+    for (const char character : argument) {
+      text += character == '\'' ? std::string("'\\''") : std::string(1, character);
+    }
+    text += '\'';
+    return text;
+  };
+  std::string command =
+      quoted((std::filesystem::path(argv[0]).parent_path() / "nextview_bound").string());
+  for (int i = 1; i < argc; ++i) {
+    const std::string argument = argv[i];
+    if (argument == "--out") ++i;
+    if (argument == "--out" || argument.starts_with("--out=")) continue;
+    command += ' ';
+    command += quoted(argument);
+  }
+  return command;
+}
+
+}  // namespace nextview
