@@ -38,6 +38,7 @@ FAKE_SSH = """#!/bin/bash
 while [ "${1#-}" != "$1" ]; do shift; done
 shift
 [ "$1" = -- ] && shift
+export SHELL=/bin/bash  # as sshd has it; what GNU parallel sends there starts it
 exec bash -c "$*"
 """
 
