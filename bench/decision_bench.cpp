@@ -15,7 +15,7 @@
 #include "planner/prediction/fast_view_predictor.h"
 #include "planner/prediction/orientations.h"
 #include "planner/prediction/panorama_view_predictor.h"
-#include "report/median.h"
+#include "reports/median.h"
 
 namespace nextview {
 

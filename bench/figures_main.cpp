@@ -19,7 +19,7 @@
 #include "base_sim/base_sim_process.h"
 #include "bench/stopwatch.h"
 #include "planner/planner_config.h"
-#include "report/median.h"
+#include "reports/median.h"
 #include "runner/run_options.h"
 #include "runner/run_setup.h"
 #include "scoring/kept_file.h"

@@ -15,7 +15,7 @@
 #include "planner/prediction/fast_view_predictor.h"
 #include "planner/prediction/free_space_field.h"
 #include "planner/prediction/orientations.h"
-#include "report/median.h"
+#include "reports/median.h"
 #include "scene/mesh_file.h"
 
 namespace nextview {

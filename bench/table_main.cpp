@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "report/median.h"
+#include "reports/median.h"
 
 namespace {
 

@@ -10,7 +10,7 @@
 #include "exporter/recovered_mesh.h"
 #include "exporter/run_mcap.h"
 #include "exporter/trajectory.h"
-#include "report/run_report.h"
+#include "reports/run_report.h"
 
 namespace nextview {
 namespace {

@@ -4,7 +4,7 @@
 #include <map>
 #include <stdexcept>
 
-#include "report/base64.h"
+#include "reports/base64.h"
 
 namespace nextview::foxglove {
 namespace {

@@ -13,7 +13,7 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "report"))
+sys.path.insert(0, str(ROOT / "reports"))
 import experiment_table  # noqa: E402
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.+]*")

@@ -9,8 +9,8 @@
 
 #include "lcmtypes/bus.h"
 #include "logger/run_log.h"
-#include "report/progress.h"
-#include "report/run_report.h"
+#include "reports/progress.h"
+#include "reports/run_report.h"
 #include "runner/background_scoring.h"
 #include "runner/heard_run.h"
 #include "runner/port_lock.h"

@@ -44,7 +44,7 @@ class Experiment(unittest.TestCase):
         cls.folder.cleanup()
 
     def figures(self, *arguments):
-        return started("report/figures.py", *arguments)
+        return started("reports/figures.py", *arguments)
 
     def assert_drawn(self, folder, name, words):
         """Both files are pictures, and the SVG's text has these words."""

@@ -35,16 +35,16 @@ const std::map<std::string, Arrows> kArrows = {
     {"planner", {{"sensor", "mapper", "planner/prediction"}, {}}},
     {"logger", {{}, {"sensor", "mapper", "planner"}}},
     {"scoring", {{"sensor", "scene", "sensor_sim", "mapper", "planner/prediction"}, {}}},
-    {"report", {{"sensor", "scene", "mapper", "planner"}, {"logger", "scoring"}}},
-    {"exporter", {{}, {"sensor", "mapper", "logger", "report"}}},
+    {"reports", {{"sensor", "scene", "mapper", "planner"}, {"logger", "scoring"}}},
+    {"exporter", {{}, {"sensor", "mapper", "logger", "reports"}}},
     {"runner",
      {{},
       {"sensor", "scene", "sensor_sim", "base_sim", "mapper", "planner", "logger", "scoring",
-       "report"}}},
+       "reports"}}},
 };
 
 /// Folders that are on the bus as a whole; of the others the files that are named so.
-const Folders kOnTheBus = {"lcmtypes", "logger", "report", "exporter", "runner"};
+const Folders kOnTheBus = {"lcmtypes", "logger", "reports", "exporter", "runner"};
 /// Folders that hold no part of the system.
 const Folders kNotOurs = {"tests", "bench", "examples"};
 

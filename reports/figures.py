@@ -16,7 +16,7 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "report"))
+sys.path.insert(0, str(ROOT / "reports"))
 import experiment_table  # noqa: E402
 
 DESCRIPTION = """\
@@ -106,7 +106,7 @@ def gnuplot(script, variables, out):
         lines = "".join(f"{name} = {json.dumps(value, ensure_ascii=False)}\n"
                         for name, value in settings.items())
         said = subprocess.run(["gnuplot", "-"], text=True, capture_output=True, check=False,
-                              input=f"{lines}load {json.dumps(str(ROOT / 'report' / script))}\n")
+                              input=f"{lines}load {json.dumps(str(ROOT / 'reports' / script))}\n")
         if said.returncode != 0 or not os.path.exists(file) or os.path.getsize(file) == 0:
             raise FigureError(f"gnuplot could not draw {file}: {said.stderr.strip()}")
         print(file)

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "report/recovered_picture.h"
+#include "reports/recovered_picture.h"
 
 namespace nextview {
 

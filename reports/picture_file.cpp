@@ -1,4 +1,4 @@
-#include "report/picture_file.h"
+#include "reports/picture_file.h"
 
 #include <cairo.h>
 

@@ -1,4 +1,4 @@
-#include "report/html_report.h"
+#include "reports/html_report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include "logger/message_fields.h"
 #include "logger/recovered_run.h"
 #include "mapper/mapper_config.h"
-#include "report/base64.h"
-#include "report/page_files.h"
-#include "report/picture_file.h"
+#include "reports/base64.h"
+#include "reports/page_files.h"
+#include "reports/picture_file.h"
 
 namespace nextview {
 namespace {

@@ -1,4 +1,4 @@
-#include "report/search_report.h"
+#include "reports/search_report.h"
 
 #include <gtest/gtest.h>
 

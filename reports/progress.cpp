@@ -1,4 +1,4 @@
-#include "report/progress.h"
+#include "reports/progress.h"
 
 #include <fmt/format.h>
 

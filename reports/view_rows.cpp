@@ -1,4 +1,4 @@
-#include "report/view_rows.h"
+#include "reports/view_rows.h"
 
 #include <utility>
 

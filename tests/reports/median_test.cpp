@@ -1,4 +1,4 @@
-#include "report/median.h"
+#include "reports/median.h"
 
 #include <gtest/gtest.h>
 

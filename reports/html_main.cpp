@@ -6,7 +6,7 @@
 
 #include "lcmtypes/program_version.h"
 #include "logger/recovered_run.h"
-#include "report/html_report.h"
+#include "reports/html_report.h"
 
 namespace {
 

@@ -1,4 +1,4 @@
-#include "report/run_report.h"
+#include "reports/run_report.h"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "report/progress.h"
+#include "reports/progress.h"
 
 namespace nextview {
 namespace {

@@ -7,7 +7,7 @@ import sys
 import tempfile
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "report"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "reports"))
 import experiment_table as et  # noqa: E402
 
 # Five views. The area reaches 95 of its last 100 at view 3; the quality 0.9 at view 5, and falls by

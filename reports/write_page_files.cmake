@@ -1,5 +1,5 @@
 # Writes OUTPUT, a header with the files of the page in FOLDER as strings.
-set(text "// Made from report/page.\n#pragma once\n\n#include <string_view>\n\nnamespace nextview {\n")
+set(text "// Made from reports/page.\n#pragma once\n\n#include <string_view>\n\nnamespace nextview {\n")
 foreach(file style:kPageStyle:report.css body:kPageBody:report.html script:kPageScript:report.js)
   string(REPLACE ":" ";" parts ${file})
   list(GET parts 1 name)

@@ -4,7 +4,7 @@
 
 #include "lcmtypes/program_version.h"
 #include "logger/run_log.h"
-#include "report/search_report.h"
+#include "reports/search_report.h"
 
 namespace {
 

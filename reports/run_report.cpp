@@ -1,4 +1,4 @@
-#include "report/run_report.h"
+#include "reports/run_report.h"
 
 #include <fmt/format.h>
 #include <fmt/ostream.h>
@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
-#include "report/median.h"
+#include "reports/median.h"
 
 namespace nextview {
 namespace {

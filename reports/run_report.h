@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "logger/run_log.h"
-#include "report/view_rows.h"
+#include "reports/view_rows.h"
 #include "scoring/view_bound.h"
 #include "scoring/visible_surface.h"
 

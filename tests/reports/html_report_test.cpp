@@ -1,4 +1,4 @@
-#include "report/html_report.h"
+#include "reports/html_report.h"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <sstream>
 
 #include "logger/recovered_run.h"
-#include "report/base64.h"
+#include "reports/base64.h"
 
 namespace nextview {
 namespace {

@@ -1,4 +1,4 @@
-#include "report/recovered_picture.h"
+#include "reports/recovered_picture.h"
 
 #include <fmt/format.h>
 

@@ -6,7 +6,7 @@ import sys
 import tempfile
 import unittest
 
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "report"))
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "reports"))
 import figures  # noqa: E402
 
 

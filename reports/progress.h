@@ -3,7 +3,7 @@
 #include <ostream>
 #include <string>
 
-#include "report/view_rows.h"
+#include "reports/view_rows.h"
 
 namespace nextview {
 
