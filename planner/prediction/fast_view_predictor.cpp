@@ -148,16 +148,9 @@ void FastViewPredictor::predict_all(const KnownSpace& space, std::span<const Vox
 
 void FastViewPredictor::fill_queues(std::size_t jobs) {
   if (queues_.size() < jobs) queues_ = std::vector<PacketQueue>(jobs);
-  for (std::size_t thread = 0; thread < workspaces_.size(); ++thread) {
-    const std::size_t first = first_job(thread, jobs);
-    const std::size_t end = first_job(thread + 1, jobs);
-    for (std::size_t job = first; job < end; ++job) {
-      const std::size_t packets = tables_[job % tables_.size()].bundle.packets.size();
-      // What others will help with: the last third of a thread's jobs, or all when it has few.
-      const bool shared = end - first < 3 || 3 * (job - first) >= 2 * (end - first);
-      const std::size_t portion = threads() == 1 ? packets : shared ? kPortion : (packets + 1) / 2;
-      queues_[job].refill(packets, portion);
-    }
+  for (std::size_t job = 0; job < jobs; ++job) {
+    const std::size_t packets = tables_[job % tables_.size()].bundle.packets.size();
+    queues_[job].refill(packets, threads() == 1 ? packets : kPortion);
   }
 }
 
