@@ -81,7 +81,7 @@ void SurfaceStrategy::begin_with(const KnownSpace& space) {
   if (parameters_.grow_planes) grown_.emplace(space.map());
   in_vain_.assign(space.field().size(), 0);
   aimed_at_.clear();
-  refused_m_.clear();
+  refused_.clear();
   candidates_.begin_with(known(space));
 }
 
@@ -110,7 +110,7 @@ void SurfaceStrategy::follow_map(const KnownSpace& space, int view) {
   changed_slots_.clear();
   updated_surfaces_.clear();
   doubt_what_was_not_seen(space);
-  forget_refusals_near(map, changed);
+  refused_.forget_near(*clear_, map, changed);
 }
 
 void SurfaceStrategy::doubt_what_was_not_seen(const KnownSpace& space) {
@@ -124,34 +124,10 @@ void SurfaceStrategy::doubt_what_was_not_seen(const KnownSpace& space) {
   aimed_at_.clear();
 }
 
-void SurfaceStrategy::forget_refusals_near(const VoxelMap& map,
-                                           std::span<const std::uint32_t> changed_slots) {
-  if (refused_m_.empty()) return;
-  const double near_m = parameters_.feasibility.clearance_m + voxel_size_m_;
-  const auto known_better = [&](const Eigen::Vector3d& refused_m) {
-    return std::ranges::any_of(changed_slots, [&](std::uint32_t slot) {
-      return (map.grid().center_m(map.index_of_slot(slot)) - refused_m).norm() < near_m;
-    });
-  };
-  if (std::erase_if(refused_m_, known_better) == 0) return;
-  clear_->unblock_all();
-  for (const Eigen::Vector3d& refused_m : refused_m_) {
-    clear_->block(refused_m, parameters_.feasibility.clearance_m);
-  }
-}
-
-// Why the base refused is not known, only that something is too near on the way: most likely at the
-// goal, and when that was not it at a corner, where ways pass obstacles.
 void SurfaceStrategy::take_refusal(const Situation& situation) {
   if (situation.refused.empty()) return;
   aimed_at_.clear();  // nobody went there
-  const auto keep_out_of = [&](const Eigen::Vector3d& position_m) {
-    refused_m_.push_back(position_m);
-    clear_->block(position_m, parameters_.feasibility.clearance_m);
-  };
-  keep_out_of(situation.refused.back().position_m);
-  if (situation.refused.size() < 2) return;
-  for (std::size_t i = 1; i + 1 < way_.size(); ++i) keep_out_of(way_[i]);
+  refused_.add(*clear_, way_, situation.refused.size());
 }
 
 PositionLattice SurfaceStrategy::enough_positions(const Situation& situation) const {

@@ -7,6 +7,7 @@
 #include "planner/clear_space.h"
 #include "planner/prediction/grown_surface.h"
 #include "planner/prediction/surface_gain.h"
+#include "planner/refused_places.h"
 #include "planner/shortest_paths.h"
 #include "planner/strategy.h"
 #include "planner/unseen_boundary.h"
@@ -60,7 +61,6 @@ class SurfaceStrategy : public Strategy {
   void follow_map(const KnownSpace& space, int view);
   void begin_with(const KnownSpace& space);
   void doubt_what_was_not_seen(const KnownSpace& space);
-  void forget_refusals_near(const VoxelMap& map, std::span<const std::uint32_t> changed_slots);
   void take_refusal(const Situation& situation);
   SurfaceGain::Known known(const KnownSpace& space) const;
   PositionLattice enough_positions(const Situation& situation) const;
@@ -85,8 +85,8 @@ class SurfaceStrategy : public Strategy {
   std::vector<std::uint32_t> aimed_at_;       // offsets the view under way is to show
   std::vector<std::uint32_t> changed_slots_;  // folded, not yet followed
   std::vector<std::uint32_t> updated_surfaces_;
-  std::vector<Eigen::Vector3d> way_;        // of the last decision
-  std::vector<Eigen::Vector3d> refused_m_;  // where the base would not go, as far as is known
+  std::vector<Eigen::Vector3d> way_;  // of the last decision
+  RefusedPlaces refused_;
   std::optional<SensorPose> home_;
   std::optional<UnseenBoundary> left_unseen_;
   int followed_view_ = 0;
