@@ -88,22 +88,36 @@ void ShortestPaths::exempt_around(const VoxelMap& map, const VoxelIndex& present
   const VoxelNearness body(parameters.body_radius_m, voxel_m);
   const VoxelNearness departure(departure_m, voxel_m);
   const int body_reach = body.reach();
+  std::vector<VoxelIndex> of_body;
+  for (int k = -body_reach; k <= body_reach; ++k) {
+    for (int j = -body_reach; j <= body_reach; ++j) {
+      for (int i = -body_reach; i <= body_reach; ++i) {
+        if (body.box_is_nearer({i, j, k})) of_body.push_back({i, j, k});
+      }
+    }
+  }
   // Beyond this no voxel can have an unknown one within the departure in its body.
   const int reach = departure.reach() + body_reach;
   const int at_present = nearest_occupied(map, present, clear);
+  double body_voxels = 0.0;
+  for (const VoxelIndex& step : of_body) {
+    body_voxels = std::max(body_voxels, std::sqrt(step.squaredNorm()));
+  }
+  const double departure_voxels = std::sqrt(departure.center_limit());
   const auto unknown_near = [&](const VoxelIndex& voxel) {
-    for (int k = -body_reach; k <= body_reach; ++k) {
-      for (int j = -body_reach; j <= body_reach; ++j) {
-        for (int i = -body_reach; i <= body_reach; ++i) {
-          const VoxelIndex step(i, j, k);
-          if (!body.box_is_nearer(step)) continue;
-          const Label label = map.label(voxel + step);
-          if (label == Label::Empty || label == Label::Occupied) continue;
-          if (!departure.center_is_nearer(voxel + step - present)) return true;
-        }
-      }
-    }
-    return false;
+    const double from_present = std::sqrt((voxel - present).squaredNorm());
+    if (from_present + body_voxels < departure_voxels) return false;  // all of it is exempt
+    return std::ranges::any_of(of_body, [&](const VoxelIndex& step) {
+      if (departure.center_is_nearer(voxel + step - present)) return false;
+      const Label label = map.label(voxel + step);
+      return label != Label::Empty && label != Label::Occupied;
+    });
+  };
+  // Whether something Occupied is nearer than at the present position. Where nothing is within the
+  // clearance there, the space's own counts say so without a search.
+  const auto occupied_nearer = [&](const VoxelIndex& voxel, Cell cell) {
+    return space_->is_occupied_near(cell) &&
+           (at_present == clear || nearest_occupied(map, voxel, at_present) < at_present);
   };
   for (int k = -reach; k <= reach; ++k) {
     for (int j = -reach; j <= reach; ++j) {
@@ -111,16 +125,15 @@ void ShortestPaths::exempt_around(const VoxelMap& map, const VoxelIndex& present
         const VoxelIndex voxel = present + VoxelIndex(i, j, k);
         if (!space_->window().contains(voxel)) continue;
         const Cell cell = space_->cell(voxel);
-        const bool is_present = voxel == present;
-        if (!is_present && (space_->is_clear(cell) || !space_->is_empty(cell) ||
-                            !space_->is_within_limits(cell) || space_->is_blocked(cell))) {
-          continue;
+        if (space_->is_clear(cell)) continue;
+        if (voxel != present) {
+          if (!space_->is_empty(cell) || !space_->is_within_limits(cell) ||
+              space_->is_blocked(cell)) {
+            continue;
+          }
+          if (occupied_nearer(voxel, cell) || unknown_near(voxel)) continue;
         }
-        if (is_present && space_->is_clear(cell)) continue;
-        const int nearest =
-            space_->is_occupied_near(cell) ? nearest_occupied(map, voxel, clear) : clear;
-        if (!is_present && (nearest < at_present || unknown_near(voxel))) continue;
-        passage_[cell] = nearest < clear ? Passage::Departing : Passage::Exempt;
+        passage_[cell] = space_->is_occupied_near(cell) ? Passage::Departing : Passage::Exempt;
         exempted_.push_back(cell);
       }
     }
