@@ -40,8 +40,8 @@ std::optional<Decision> decide_by_simplex(const Situation& situation, ShortestPa
                                           ViewPredictor& predictor,
                                           const PlannerParameters& parameters);
 
-/// The paper's method, section 5: the simplex, and the rules that end a run (P23). Before rule 1
-/// ends it, a good view is looked for from everywhere (LastLook), and the run goes on from the
+/// The paper's method, section 5: the simplex, and the rules that end a run (P23). Before rule 1 or
+/// 3 ends it, a good view is looked for from everywhere (LastLook), and the run goes on from the
 /// best.
 class PaperStrategy : public Strategy {
  public:
@@ -62,7 +62,7 @@ class PaperStrategy : public Strategy {
  private:
   void follow_map(const VoxelMap& map);
   NextView decided(const Situation& situation);
-  NextView last_look(const Situation& situation);
+  NextView last_look(const Situation& situation, StopReason otherwise);
 
   PlannerParameters search_;
   StopParameters stop_;

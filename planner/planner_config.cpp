@@ -38,10 +38,11 @@ PlannerParameters planner_parameters_of(const run_config_t& config) {
 }
 
 StopParameters stop_parameters_of(const run_config_t& config) {
-  return {.use_quality = config.planner.stop_rule == 2,
+  return {.rule = StopRule{config.planner.stop_rule},
           .quality_threshold = config.planner.quality_threshold,
           .stop_window_views = config.planner.stop_window_views,
-          .stop_new_area_m2 = config.planner.stop_new_area_m2};
+          .stop_new_area_m2 = config.planner.stop_new_area_m2,
+          .stop_improvement = StopParameters{}.stop_improvement};
 }
 
 std::vector<Orientation> orientations_of(const run_config_t& config) {
