@@ -6,6 +6,7 @@
 
 #include "lcmtypes/validate.h"
 #include "lcmtypes/validate_checks.h"
+#include "planner/strategy_facts.h"
 #include "sensor/sensor_geometry.h"
 
 namespace nextview {
@@ -127,11 +128,11 @@ std::string check(const run_config_t& config) {
   check_base(checks, config.base);
   check_map(checks, config.map);
   check_planner(checks, config.planner);
-  checks.require(config.strategy == "paper" || config.strategy == "surface",
-                 "strategy '" + config.strategy + "' is neither paper nor surface");
-  // No view shows less than nothing: such a run would never end by itself.
-  checks.require(config.strategy != "surface" || config.planner.least_gain_m2 > 0.0,
-                 "least_gain_m2 is not above 0");
+  const StrategyFacts* strategy = find_strategy(config.strategy);
+  checks.require(strategy != nullptr, no_such_strategy(config.strategy));
+  checks.require(
+      strategy == nullptr || !strategy->ends_by_least_gain || config.planner.least_gain_m2 > 0.0,
+      "least_gain_m2 is not above 0");
   return checks.reason();
 }
 

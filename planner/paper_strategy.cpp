@@ -9,7 +9,10 @@
 #include <vector>
 
 #include "lcmtypes/parameter_bounds.h"
+#include "planner/prediction/fast_view_predictor.h"
 #include "planner/prediction/orientations.h"
+#include "planner/prediction/panorama_view_predictor.h"
+#include "planner/strategy_inputs.h"
 #include "planner/view_evaluator.h"
 #include "sensor/random_stream.h"
 
@@ -105,9 +108,21 @@ Decision decision_of(const SimplexResult& search, const ViewEvaluator& evaluator
     }
     decision.tried.push_back(tried);
   }
-  decision.strategy = PaperStrategy::kName;
+  decision.strategy = PaperStrategy::kFacts.name;
   decision.reason = reason_of(decision);
   return decision;
+}
+
+/// Every ray of every orientation, or with more than 20 orientations and quality off one panorama
+/// that answers them all.
+std::unique_ptr<ViewPredictor> predictor_for(const StrategyInputs& inputs) {
+  if (inputs.orientations.size() > 20 && !inputs.search.use_quality) {
+    return std::make_unique<PanoramaViewPredictor>(inputs.raster, inputs.voxel_size_m,
+                                                   inputs.orientations, inputs.threads);
+  }
+  return std::make_unique<FastViewPredictor>(inputs.raster, inputs.voxel_size_m,
+                                             inputs.orientations, inputs.search.use_quality,
+                                             inputs.threads);
 }
 
 }  // namespace
@@ -159,6 +174,13 @@ std::optional<Decision> decide_by_simplex(const Situation& situation, ShortestPa
                           values, parameters.fitness_tolerance, parameters.max_evaluations);
   if (search.best.value == kInfeasible) return std::nullopt;
   return decision_of(search, evaluator, paths);
+}
+
+std::unique_ptr<Strategy> PaperStrategy::make(const StrategyInputs& inputs) {
+  return std::make_unique<PaperStrategy>(
+      inputs.search, inputs.stop, inputs.voxel_size_m, predictor_for(inputs),
+      std::make_unique<FastViewPredictor>(inputs.coarse_raster, inputs.voxel_size_m,
+                                          inputs.orientations, false, inputs.threads));
 }
 
 PaperStrategy::PaperStrategy(const PlannerParameters& search, const StopParameters& stop,
@@ -237,7 +259,7 @@ NextView PaperStrategy::last_look(const Situation& situation, StopReason otherwi
   decision.waypoints_m = paths_.waypoints_to_m(decision.pose.position_m);
   decision.fitness = found->best.fitness;
   decision.evaluations = static_cast<int>(last_look_.voxels_asked());
-  decision.strategy = kName;
+  decision.strategy = kFacts.name;
   decision.reason = "the last views have shown nothing new; " + reason_of(decision);
   return decision;
 }

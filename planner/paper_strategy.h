@@ -11,6 +11,7 @@
 #include "planner/refused_places.h"
 #include "planner/shortest_paths.h"
 #include "planner/strategy.h"
+#include "planner/strategy_facts.h"
 #include "planner/termination.h"
 
 namespace nextview {
@@ -45,7 +46,13 @@ std::optional<Decision> decide_by_simplex(const Situation& situation, ShortestPa
 /// best.
 class PaperStrategy : public Strategy {
  public:
-  static constexpr const char* kName = "paper";
+  static constexpr StrategyFacts kFacts{.name = "paper",
+                                        .summary = "a hill climb from where the sensor is",
+                                        .views = 60,
+                                        .views_with_quality = 300,
+                                        .directions = 20,
+                                        .ends_by_least_gain = false};
+  static std::unique_ptr<Strategy> make(const StrategyInputs& inputs);
 
   /// @param voxel_size_m of the map, for areas
   /// @param coarse_predictor of the same orientations, for LastLook

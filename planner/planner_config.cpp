@@ -1,15 +1,10 @@
 #include "planner/planner_config.h"
 
 #include <algorithm>
-#include <stdexcept>
 #include <vector>
 
 #include "mapper/mapper_config.h"
-#include "planner/paper_strategy.h"
-#include "planner/prediction/fast_view_predictor.h"
-#include "planner/prediction/orientations.h"
-#include "planner/prediction/panorama_view_predictor.h"
-#include "planner/surface_strategy.h"
+#include "planner/strategy_inputs.h"
 #include "sensor/sensor_config.h"
 
 namespace nextview {
@@ -51,36 +46,19 @@ std::vector<Orientation> orientations_of(const run_config_t& config) {
   return icosahedron_orientations(subdivisions);
 }
 
+PredictionRaster raster_of(const run_config_t& config, const PredictionRays& at_most) {
+  return prediction_raster(sensor_of(config), range_limits_of(config), at_most);
+}
+
 PredictionRaster raster_of(const run_config_t& config) {
-  PredictionRays rays;
-  if (config.planner.prediction_columns > 0) {
-    rays = {config.planner.prediction_columns, config.planner.prediction_rows};
-  }
-  return prediction_raster(sensor_of(config), range_limits_of(config), rays);
+  if (config.planner.prediction_columns == 0) return raster_of(config, PredictionRays());
+  return raster_of(config, {config.planner.prediction_columns, config.planner.prediction_rows});
 }
 
-/// Every ray of every orientation, or with more than 20 orientations and quality off one panorama
-/// that answers them all.
-std::unique_ptr<ViewPredictor> make_predictor(const run_config_t& config) {
-  const PredictionRaster raster = raster_of(config);
-  const bool use_quality = config.planner.quality_weight > 0.0;
-  if (config.planner.directions > 20 && !use_quality) {
-    return std::make_unique<PanoramaViewPredictor>(raster, config.map.voxel_size_m,
-                                                   orientations_of(config), config.planner.threads);
-  }
-  return std::make_unique<FastViewPredictor>(raster, config.map.voxel_size_m,
-                                             orientations_of(config), use_quality,
-                                             config.planner.threads);
-}
-
-/// A sixteenth of the rays.
-std::unique_ptr<ViewPredictor> make_coarse_predictor(const run_config_t& config) {
+PredictionRaster coarse_raster_of(const run_config_t& config) {
   const PredictionRaster fine = raster_of(config);
-  const PredictionRays coarse{std::max(8, fine.rays.columns() / 4),
-                              std::max(4, fine.rays.rows() / 4)};
-  return std::make_unique<FastViewPredictor>(
-      prediction_raster(sensor_of(config), range_limits_of(config), coarse),
-      config.map.voxel_size_m, orientations_of(config), false, config.planner.threads);
+  return raster_of(config,
+                   {std::max(8, fine.rays.columns() / 4), std::max(4, fine.rays.rows() / 4)});
 }
 
 SurfaceParameters surface_parameters_of(const run_config_t& config) {
@@ -97,25 +75,23 @@ SurfaceParameters surface_parameters_of(const run_config_t& config) {
   return parameters;
 }
 
-std::unique_ptr<Strategy> make_strategy(const run_config_t& config) {
-  if (config.strategy == PaperStrategy::kName) {
-    return std::make_unique<PaperStrategy>(planner_parameters_of(config),
-                                           stop_parameters_of(config), config.map.voxel_size_m,
-                                           make_predictor(config), make_coarse_predictor(config));
-  }
-  if (config.strategy == SurfaceStrategy::kName) {
-    return std::make_unique<SurfaceStrategy>(raster_of(config), config.map.voxel_size_m,
-                                             orientations_of(config),
-                                             surface_parameters_of(config));
-  }
-  throw std::invalid_argument("there is no strategy '" + config.strategy + "'");
+StrategyInputs strategy_inputs_of(const run_config_t& config) {
+  return {.voxel_size_m = config.map.voxel_size_m,
+          .raster = raster_of(config),
+          .coarse_raster = coarse_raster_of(config),
+          .orientations = orientations_of(config),
+          .threads = config.planner.threads,
+          .search = planner_parameters_of(config),
+          .stop = stop_parameters_of(config),
+          .surface = surface_parameters_of(config)};
 }
 
 }  // namespace
 
 std::unique_ptr<ViewPlanner> make_view_planner(const run_config_t& config) {
   return std::make_unique<ViewPlanner>(
-      grid_of(config), window_of(config), make_strategy(config),
+      grid_of(config), window_of(config),
+      make_strategy(config.strategy, strategy_inputs_of(config)),
       ViewPlanner::Parameters{.seed = config.seed,
                               .max_views = config.planner.max_views,
                               .threads = config.planner.threads});

@@ -12,6 +12,8 @@
 
 namespace nextview {
 
+struct StrategyInputs;
+
 /// What a view is decided on.
 struct Situation {
   const KnownSpace& space;  ///< with all range images so far folded in
@@ -33,8 +35,8 @@ struct FoldedView {
 
 /// Chooses views. A run has one strategy, which may remember what it has seen, but nothing else:
 /// given the same views and the same situations it decides the same, whatever the machine, the time
-/// or the number of threads. A new strategy is a file of its own and a line in make_strategy
-/// (planner_config.h).
+/// or the number of threads. A new strategy is a file of its own and a line in the list of them
+/// (strategy_list.h), which says what it has besides.
 class Strategy {
  public:
   virtual ~Strategy() = default;

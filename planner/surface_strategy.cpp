@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "planner/strategy_inputs.h"
+
 namespace nextview {
 
 namespace {
@@ -56,6 +58,11 @@ SurfaceStrategy::SurfaceStrategy(const PredictionRaster& raster, double voxel_si
       range_max_m_(raster.range_max_m),
       gain_(raster, voxel_size_m, std::move(orientations), gain_parameters(parameters)),
       candidates_(gain_, parameters.path_cost_per_m) {}
+
+std::unique_ptr<Strategy> SurfaceStrategy::make(const StrategyInputs& inputs) {
+  return std::make_unique<SurfaceStrategy>(inputs.raster, inputs.voxel_size_m, inputs.orientations,
+                                           inputs.surface);
+}
 
 KnownSpace::Surfaces SurfaceStrategy::surfaces() const {
   return parameters_.improvement_weight > 0.0 ? KnownSpace::Surfaces::Keep
@@ -204,7 +211,7 @@ Decision SurfaceStrategy::decision(const SurfaceGain::Known& known,
   decision.waypoints_m = way_;
   decision.pose = {way_.back(), orientation.pan_rad, orientation.tilt_rad};
   decision.fitness = fitness(gain_.counts(known, chosen.view.orientation), FactorWeights{});
-  decision.strategy = kName;
+  decision.strategy = kFacts.name;
   decision.expected_gain_m2 = area_m2(chosen.view.new_voxels);
   decision.overlap = chosen.view.overlap;
   decision.reason = in_words(best, positions);
@@ -245,7 +252,7 @@ NextView SurfaceStrategy::nothing_left(const Situation& situation, std::size_t p
     way_.back() = home_->position_m;
     decision.waypoints_m = way_;
     decision.pose = *home_;
-    decision.strategy = kName;
+    decision.strategy = kFacts.name;
     decision.reason = "nothing is left to see: home";
     return decision;
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -10,6 +11,7 @@
 #include "planner/refused_places.h"
 #include "planner/shortest_paths.h"
 #include "planner/strategy.h"
+#include "planner/strategy_facts.h"
 #include "planner/unseen_boundary.h"
 #include "planner/view_candidates.h"
 
@@ -42,7 +44,15 @@ struct SurfaceParameters {
 /// when no view from anywhere it can get to is expected to show anything new.
 class SurfaceStrategy : public Strategy {
  public:
-  static constexpr const char* kName = "surface";
+  static constexpr StrategyFacts kFacts{.name = "surface",
+                                        .summary =
+                                            "by the new surface to be seen from anywhere it can "
+                                            "get to, until nothing is left",
+                                        .views = 1000,
+                                        .views_with_quality = 1000,
+                                        .directions = 320,
+                                        .ends_by_least_gain = true};
+  static std::unique_ptr<Strategy> make(const StrategyInputs& inputs);
 
   /// @param voxel_size_m of the map
   /// @throws std::invalid_argument for parameters that cannot be

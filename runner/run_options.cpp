@@ -1,5 +1,7 @@
 #include "runner/run_options.h"
 
+#include <fmt/format.h>
+
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
@@ -7,6 +9,7 @@
 
 #include "lcmtypes/parameter_bounds.h"
 #include "lcmtypes/program_version.h"
+#include "planner/strategy_facts.h"
 #include "runner/bound_command.h"
 #include "runner/scene_file.h"
 #include "scene/mesh_file.h"
@@ -33,6 +36,24 @@ CLI::Validator number_in(double least, double most) { return number_within({"", 
 constexpr Bounds in_degrees(const Bounds& radians) {
   constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
   return {radians.name, radians.least * kDegreesPerRad, radians.most * kDegreesPerRad};
+}
+
+/// "paper: this; surface: that", for a help text.
+template <class Words>
+std::string of_strategies(Words words) {
+  std::string all;
+  for (const StrategyFacts& strategy : all_strategies()) {
+    all += fmt::format("{}{}: {}", all.empty() ? "" : "; ", strategy.name, words(strategy));
+  }
+  return all;
+}
+
+CLI::Validator one_of_the_strategies() {
+  return CLI::Validator(
+      [](std::string& given) {
+        return find_strategy(given) == nullptr ? no_such_strategy(given) : std::string();
+      },
+      "");
 }
 
 /// --start auto, or --start X Y Z.
@@ -112,7 +133,13 @@ void add_run_options(CLI::App& app, RunOptions& options) {
       ->capture_default_str()
       ->group(group);
   app.add_option("--views", options.views,
-                 "End after this many views; default 60, with --quality 300, for surface 1000")
+                 "End after this many views; default: " + of_strategies([](const auto& strategy) {
+                   if (strategy.views == strategy.views_with_quality) {
+                     return fmt::format("{}", strategy.views);
+                   }
+                   return fmt::format("{} (with --quality {})", strategy.views,
+                                      strategy.views_with_quality);
+                 }))
       ->check(number_within(bounds::kMaxViews))
       ->group(group);
   app.add_flag("--quality", options.quality,
@@ -237,11 +264,11 @@ std::vector<std::string> stop_rule_names() {
 
 void add_planner_options(CLI::App& app, RunOptions& options) {
   const std::string group = "Planner";
-  app.add_option(
-         "--strategy", options.strategy,
-         "How views are chosen: paper, a hill climb from where the sensor is; or surface, by "
-         "the new surface to be seen from anywhere it can get to, until nothing is left")
-      ->check(CLI::IsMember({PaperStrategy::kName, SurfaceStrategy::kName}))
+  app.add_option("--strategy", options.strategy,
+                 "How views are chosen: " + of_strategies([](const auto& strategy) {
+                   return std::string(strategy.summary);
+                 }))
+      ->check(one_of_the_strategies())
       ->capture_default_str()
       ->group(group);
   app.add_option("--path-cost", options.path_cost_per_m,
@@ -277,10 +304,10 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
       ->check(number_within(bounds::kDeparture))
       ->capture_default_str()
       ->group(group);
-  app.add_option(
-         "--directions", options.directions,
-         "Orientations tried at every position: 20, 80, 320 or 1280; default 20, for surface "
-         "320")
+  app.add_option("--directions", options.directions,
+                 "Orientations tried at every position: 20, 80, 320 or 1280; default: " +
+                     of_strategies(
+                         [](const auto& strategy) { return std::to_string(strategy.directions); }))
       ->check(CLI::IsMember({20, 80, 320, 1280}))
       ->group(group);
   app.add_option("--prediction-rays", options.prediction_rays,

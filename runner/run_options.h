@@ -30,7 +30,7 @@ struct RunOptions {
   double start_tilt_deg = 0.0;
 
   std::int64_t seed = 1;
-  std::optional<int> views;  ///< default: the paper's 60, with quality 300; 1000 for ours
+  std::optional<int> views;  ///< default: as the strategy says
   bool quality = false;
   std::string out;  ///< folder of the run; empty: a new one in runs_folder
   std::string runs_folder = "runs";
@@ -51,14 +51,14 @@ struct RunOptions {
   int margin_voxels = 1;
 
   double clearance_m = FeasibilityParameters{}.clearance_m;
-  std::string strategy = SurfaceStrategy::kName;
+  std::string strategy = std::string(SurfaceStrategy::kFacts.name);
   double departure_m = FeasibilityParameters{}.departure_m;
   double later_departure_m = SurfaceParameters{}.departure_m;
   double path_cost_per_m = SurfaceParameters{}.path_cost_per_m;
   double least_overlap = SurfaceParameters{}.min_overlap;
   double least_gain_m2 = SurfaceParameters{}.least_new_area_m2;
   bool return_home = false;
-  std::optional<int> directions;  ///< 20 for the paper's strategy, 320 for ours
+  std::optional<int> directions;  ///< default: as the strategy says
   std::string prediction_rays;    ///< COLUMNSxROWS; empty: the planner chooses
   int threads = 1;
   double step_min_m = PlannerParameters{}.step_min_m;

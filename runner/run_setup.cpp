@@ -181,9 +181,10 @@ void fill_planner(run_config_t& config, const RunOptions& options) {
   if (options.step_min_m > options.step_max_m) {
     throw SetupError("--step-min must not be above --step-max");
   }
-  const bool paper = options.strategy == PaperStrategy::kName;
-  const int views = !paper ? 1000 : options.quality ? 300 : 60;
-  config.planner.max_views = options.views.value_or(views);
+  const StrategyFacts* strategy = find_strategy(options.strategy);
+  if (strategy == nullptr) throw SetupError("--strategy: " + no_such_strategy(options.strategy));
+  config.planner.max_views =
+      options.views.value_or(options.quality ? strategy->views_with_quality : strategy->views);
   config.planner.max_attempts = options.max_attempts;
   config.planner.quality_weight = options.quality ? 1.0 : 0.0;
   config.planner.stop_rule = static_cast<std::int8_t>(stop_rule_of(options));
@@ -195,7 +196,7 @@ void fill_planner(run_config_t& config, const RunOptions& options) {
   config.planner.least_overlap = options.least_overlap;
   config.planner.least_gain_m2 = options.least_gain_m2;
   config.planner.return_home = options.return_home;
-  config.planner.directions = options.directions.value_or(paper ? 20 : 320);
+  config.planner.directions = options.directions.value_or(strategy->directions);
   fill_prediction_rays(config.planner, options.prediction_rays);
   config.planner.threads = options.threads;
   config.planner.step_min_m = options.step_min_m;

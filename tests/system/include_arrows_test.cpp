@@ -17,15 +17,19 @@ namespace fs = std::filesystem;
 
 using Folders = std::set<std::string>;
 
-/// What a folder may include besides itself. A folder's library and its files on the bus (see
-/// is_of_bus) have their own arrows; the bus files of a folder may include what its library may,
-/// the library itself, and lcmtypes. This table is the one place that a new folder is told to.
+/// Whether all files of a folder are on the bus, or those only whose names say so (see is_of_bus).
+enum class OnTheBus { ByName, Whole };
+
+/// What a folder may include besides itself. A folder's library and its files on the bus have their
+/// own arrows; the bus files of a folder may include what its library may, the library itself, and
+/// lcmtypes. This table is the one place that a new folder is told to.
 struct Arrows {
   Folders every_file;
   Folders bus_file;
+  OnTheBus on_the_bus = OnTheBus::ByName;
 };
 const std::map<std::string, Arrows> kArrows = {
-    {"lcmtypes", {{}, {"sensor"}}},
+    {"lcmtypes", {{}, {"sensor"}, OnTheBus::Whole}},
     {"sensor", {{}, {}}},
     {"scene", {{}, {}}},
     {"sensor_sim", {{"sensor", "scene"}, {}}},
@@ -33,28 +37,29 @@ const std::map<std::string, Arrows> kArrows = {
     {"mapper", {{"sensor"}, {}}},
     {"planner/prediction", {{"sensor", "mapper"}, {}}},
     {"planner", {{"sensor", "mapper", "planner/prediction"}, {}}},
-    {"logger", {{}, {"sensor", "mapper", "planner"}}},
+    {"logger", {{}, {"sensor", "mapper", "planner"}, OnTheBus::Whole}},
     {"scoring", {{"sensor", "scene", "sensor_sim", "mapper", "planner/prediction"}, {}}},
-    {"reports", {{"sensor", "scene", "mapper", "planner"}, {"logger", "scoring"}}},
-    {"exporter", {{}, {"sensor", "mapper", "logger", "reports"}}},
+    {"reports", {{"sensor", "scene", "mapper", "planner"}, {"logger", "scoring"}, OnTheBus::Whole}},
+    {"exporter", {{}, {"sensor", "mapper", "logger", "reports"}, OnTheBus::Whole}},
     {"runner",
      {{},
       {"sensor", "scene", "sensor_sim", "base_sim", "mapper", "planner", "logger", "scoring",
-       "reports"}}},
+       "reports"},
+      OnTheBus::Whole}},
 };
 
-/// Folders that are on the bus as a whole; of the others the files that are named so.
-const Folders kOnTheBus = {"lcmtypes", "logger", "reports", "exporter", "runner"};
 /// Folders that hold no part of the system.
 const Folders kNotOurs = {"tests", "bench", "examples"};
 
-/// Of a folder on the bus, but without the bus, and for everybody: what a parameter may be is said
-/// once.
-const fs::path kForEverybody = "lcmtypes/parameter_bounds.h";
+/// Without the bus, whatever their folder is, and for everybody: what a parameter may be and which
+/// strategies there are is said once.
+const std::set<fs::path> kForEverybody = {"lcmtypes/parameter_bounds.h",
+                                          "planner/strategy_facts.h"};
 
 bool is_of_bus(const std::string& folder, const std::string& stem) {
-  if (fs::path(folder) / (stem + ".h") == kForEverybody) return false;
-  if (kOnTheBus.contains(folder)) return true;
+  if (kForEverybody.contains(fs::path(folder) / (stem + ".h"))) return false;
+  const auto arrows = kArrows.find(folder);
+  if (arrows != kArrows.end() && arrows->second.on_the_bus == OnTheBus::Whole) return true;
   for (const char* ending : {"_process", "_main", "_config", "_message"}) {
     if (stem.ends_with(ending)) return true;
   }
@@ -73,7 +78,7 @@ Source source_of(const fs::path& file) {
 }
 
 bool may_include(const Source& from, const Source& to) {
-  if (to.file == kForEverybody) return true;
+  if (kForEverybody.contains(to.file)) return true;
   if (from.folder == to.folder) return from.of_bus || !to.of_bus;
   if (from.of_bus && to.folder == "lcmtypes") return true;
   if (to.of_bus && !from.of_bus) return false;
@@ -160,6 +165,22 @@ TEST(IncludeArrows, LeaveTheBusOutOfLibraries) {
     }
   }
   EXPECT_GT(libraries, 80);
+}
+
+/// Which strategy a run has is nobody's business but its own and the list's: what differs between
+/// strategies is a fact in the list.
+TEST(IncludeArrows, KnowNoStrategyByName) {
+  static const std::regex kAsked(R"(strategy\w*\s*[!=]=|[!=]=\s*\S*Strategy::kFacts)");
+  for (const Source& source : sources()) {
+    std::ifstream in(fs::path(NEXTVIEW_SOURCE_DIR) / source.file);
+    int number = 0;
+    for (std::string line; std::getline(in, line);) {
+      ++number;
+      // Whether there is one at all may be asked.
+      line = std::regex_replace(line, std::regex(R"([!=]= nullptr)"), "");
+      EXPECT_FALSE(std::regex_search(line, kAsked)) << source.file << ":" << number << ": " << line;
+    }
+  }
 }
 
 TEST(IncludeArrows, HideEmbreeAndAssimp) {

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "planner/paper_strategy.h"
+#include "planner/prediction/orientations.h"
+#include "planner/prediction/view_predictor.h"
+#include "planner/surface_strategy.h"
+#include "planner/termination.h"
+
+namespace nextview {
+
+/// What a strategy may be made of. A strategy takes what it needs of it; where the robot may be is
+/// in `search` and in `surface`.
+struct StrategyInputs {
+  double voxel_size_m = 0.10;             ///< of the map
+  PredictionRaster raster;                ///< the rays a view is predicted with
+  PredictionRaster coarse_raster;         ///< the same with a sixteenth of the rays
+  std::vector<Orientation> orientations;  ///< tried at every position
+  int threads = 1;                        ///< of no influence on the results
+  PlannerParameters search;               ///< of a simplex
+  StopParameters stop;                    ///< the paper's rules
+  SurfaceParameters surface;              ///< of what looks for surface
+};
+
+/// The strategy of that name.
+/// @throws std::invalid_argument when there is none, or for parameters that cannot be
+std::unique_ptr<Strategy> make_strategy(std::string_view name, const StrategyInputs& inputs);
+
+}  // namespace nextview
