@@ -51,7 +51,8 @@ class PaperStrategy : public Strategy {
                                         .views = 60,
                                         .views_with_quality = 300,
                                         .directions = 20,
-                                        .ends_by_least_gain = false};
+                                        .ends_by_least_gain = false,
+                                        .ends_by_stop_rule = true};
   static std::unique_ptr<Strategy> make(const StrategyInputs& inputs);
 
   /// @param voxel_size_m of the map, for areas

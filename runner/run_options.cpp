@@ -272,8 +272,8 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
       ->capture_default_str()
       ->group(group);
   app.add_option("--path-cost", options.path_cost_per_m,
-                 "surface: trades views against metres; a way of d metres makes a view worth "
-                 "exp(-COST d) of what it shows, 0: fewest views")
+                 "surface, paper_tidy_up: trades views against metres; a way of d metres makes a "
+                 "view worth exp(-COST d) of what it shows, 0: fewest views")
       ->check(number_within(bounds::kPathCost))
       ->capture_default_str()
       ->group(group);
