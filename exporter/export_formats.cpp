@@ -5,6 +5,7 @@
 
 #include "exporter/mesh_writer.h"
 #include "exporter/octree_file.h"
+#include "exporter/one_voxel_holes.h"
 #include "exporter/oriented_points.h"
 #include "exporter/point_clouds.h"
 #include "exporter/recovered_mesh.h"
@@ -78,8 +79,13 @@ std::vector<ExportFormat> make_formats() {
        {std::pair("ply", PointFormat::Ply), std::pair("pcd", PointFormat::Pcd)}) {
     formats.push_back(stream_format(
         std::string("voxels.") + ending, "Occupied voxels: centre, normal, quality",
-        [format = format](RecoveredRun& run, const ExportOptions&, std::ostream& out) {
-          write_occupied_voxels(out, format, run.builder.map());
+        [format = format](RecoveredRun& run, const ExportOptions& options, std::ostream& out) {
+          const VoxelMap& map = run.builder.map();
+          if (options.fill_holes) {
+            write_filled_voxels(out, format, map, one_voxel_holes(map));
+          } else {
+            write_occupied_voxels(out, format, map);
+          }
         }));
     formats.push_back(stream_format(
         std::string("points.") + ending, "sensed points: position, normal, view",
@@ -98,8 +104,10 @@ std::vector<ExportFormat> make_formats() {
   }
   formats.push_back(
       {"octomap.bt", "the map as OctoMap's binary tree",
-       [](RecoveredRun& run, const ExportOptions&, const std::filesystem::path& file) {
-         write_octree(run.builder.map(), file);
+       [](RecoveredRun& run, const ExportOptions& options, const std::filesystem::path& file) {
+         const VoxelMap& map = run.builder.map();
+         write_octree(map, options.fill_holes ? one_voxel_holes(map) : std::vector<VoxelIndex>(),
+                      file);
        }});
   formats.push_back(stream_format("run.mcap", "the run for Foxglove and Lichtblick",
                                   [](RecoveredRun& run, const ExportOptions&, std::ostream& out) {

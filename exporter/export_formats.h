@@ -17,6 +17,8 @@ struct ExportOptions {
   std::optional<std::int64_t> run;  ///< which, when the log holds several
   int max_views = std::numeric_limits<int>::max();
   SimplifyOptions simplify;  ///< of meshes
+  /// Of voxels and octrees: holes of one voxel are filled (one_voxel_holes.h), as meshes have them.
+  bool fill_holes = false;
 };
 
 /// A file a run can be turned into. Its name is what a user asks for.

@@ -70,6 +70,9 @@ int main(int argc, char** argv) {
   app.add_option("--error", options.simplify.error_m,
                  "Meshes: simplify as far as the surface moves by no more than about this, metres")
       ->check(CLI::NonNegativeNumber);
+  app.add_flag("--fill-holes", options.fill_holes,
+               "Voxels and octomap.bt: fill holes of one voxel, as meshes always have them; among "
+               "voxels they are told by a field of their own");
   app.add_option("--run", options.run, "Which run, when the log holds several");
   app.set_version_flag("--version", "nextview_export " + std::string(nextview::program_version()));
   app.footer(format_list());

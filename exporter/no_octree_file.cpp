@@ -5,7 +5,7 @@
 
 namespace nextview {
 
-void write_octree(const VoxelMap&, const std::filesystem::path& file) {
+void write_octree(const VoxelMap&, std::span<const VoxelIndex>, const std::filesystem::path& file) {
   throw std::runtime_error(file.string() +
                            ": this program was built without OctoMap; install liboctomap-dev, "
                            "remove build/release and build again");

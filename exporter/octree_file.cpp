@@ -20,11 +20,10 @@ VoxelIndex first_cell(const VoxelGrid& grid, const VoxelIndex& voxel) {
 
 }  // namespace
 
-void write_octree(const VoxelMap& map, const std::filesystem::path& file) {
+void write_octree(const VoxelMap& map, std::span<const VoxelIndex> filled,
+                  const std::filesystem::path& file) {
   octomap::OcTree tree(0.5 * map.grid().voxel_size_m);
-  for_each_voxel(map.window(), [&](const VoxelIndex& voxel) {
-    const Label label = map.label(voxel);
-    if (label != Label::Occupied && label != Label::Empty) return;
+  const auto put = [&](const VoxelIndex& voxel, bool occupied) {
     const VoxelIndex first = first_cell(map.grid(), voxel);
     if ((first.array().abs() >= kCellsOnASide - 1).any()) {
       throw std::runtime_error(
@@ -34,9 +33,14 @@ void write_octree(const VoxelMap& map, const std::filesystem::path& file) {
       const octomap::OcTreeKey key(static_cast<octomap::key_type>(cell.x() + kCellsOnASide),
                                    static_cast<octomap::key_type>(cell.y() + kCellsOnASide),
                                    static_cast<octomap::key_type>(cell.z() + kCellsOnASide));
-      tree.updateNode(key, label == Label::Occupied);
+      tree.updateNode(key, occupied);
     });
+  };
+  for_each_voxel(map.window(), [&](const VoxelIndex& voxel) {
+    const Label label = map.label(voxel);
+    if (label == Label::Occupied || label == Label::Empty) put(voxel, label == Label::Occupied);
   });
+  for (const VoxelIndex& voxel : filled) put(voxel, true);  // outweighs that it was free
   if (!tree.writeBinary(file.string())) {
     throw std::runtime_error(file.string() + ": cannot be written; does its folder exist?");
   }

@@ -26,23 +26,52 @@ std::uint64_t count_points(const RangeImage& image) {
   return points;
 }
 
+const std::string kOccupiedVoxels =
+    "nextview: Occupied voxels; centre in metres, world frame, z up; mean normal; quality 0..1";
+
+template <class See>
+void for_each_occupied(const VoxelMap& map, See see) {
+  for_each_voxel(map.window(), [&](const VoxelIndex& voxel) {
+    if (map.label(voxel) == Label::Occupied) see(voxel);
+  });
+}
+
+std::uint64_t count_occupied(const VoxelMap& map) {
+  std::uint64_t occupied = 0;
+  for_each_occupied(map, [&](const VoxelIndex&) { ++occupied; });
+  return occupied;
+}
+
+// Centre, normal and quality.
+void write_voxel(PointWriter& writer, const VoxelMap& map, const VoxelIndex& voxel) {
+  const SurfaceVoxel* surface = map.surface(voxel);
+  const SurfaceVoxel seen = surface == nullptr ? SurfaceVoxel() : *surface;
+  writer << map.grid().center_m(voxel) << seen.mean_normal()
+         << static_cast<float>(seen.quality_01());
+}
+
 }  // namespace
 
 void write_occupied_voxels(std::ostream& out, PointFormat format, const VoxelMap& map) {
-  std::uint64_t occupied = 0;
-  for_each_voxel(map.window(), [&](const VoxelIndex& voxel) {
-    occupied += map.label(voxel) == Label::Occupied ? 1 : 0;
+  PointWriter writer(out, format, fields_with({"quality", "quality"}), count_occupied(map),
+                     kOccupiedVoxels);
+  for_each_occupied(map, [&](const VoxelIndex& voxel) { write_voxel(writer, map, voxel); });
+}
+
+void write_filled_voxels(std::ostream& out, PointFormat format, const VoxelMap& map,
+                         std::span<const VoxelIndex> filled) {
+  std::vector<PointField> fields = fields_with({"quality", "quality"});
+  fields.push_back({"filled", "filled", PointField::Type::Unsigned});
+  PointWriter writer(out, format, fields, count_occupied(map) + filled.size(),
+                     kOccupiedVoxels + "; filled 1: not sensed, a hole of one voxel");
+  for_each_occupied(map, [&](const VoxelIndex& voxel) {
+    write_voxel(writer, map, voxel);
+    writer << std::uint32_t{0};
   });
-  PointWriter writer(out, format, fields_with({"quality", "quality"}), occupied,
-                     "nextview: Occupied voxels; centre in metres, world frame, z up; mean normal; "
-                     "quality 0..1");
-  for_each_voxel(map.window(), [&](const VoxelIndex& voxel) {
-    if (map.label(voxel) != Label::Occupied) return;
-    const SurfaceVoxel* surface = map.surface(voxel);
-    const SurfaceVoxel seen = surface == nullptr ? SurfaceVoxel() : *surface;
-    writer << map.grid().center_m(voxel) << seen.mean_normal()
-           << static_cast<float>(seen.quality_01());
-  });
+  for (const VoxelIndex& voxel : filled) {
+    write_voxel(writer, map, voxel);
+    writer << std::uint32_t{1};
+  }
 }
 
 void for_each_point(const RangeImage& image, const std::function<void(const SensedPoint&)>& see) {

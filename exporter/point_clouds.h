@@ -16,6 +16,11 @@ namespace nextview {
 /// towards the sensor (0, 0, 0 where there is none), quality in 0..1.
 void write_occupied_voxels(std::ostream& out, PointFormat format, const VoxelMap& map);
 
+/// The same with one field more, `filled`: 0 for these, which were sensed. Behind them come voxels
+/// that were not, with 1, no normal and quality 0.
+void write_filled_voxels(std::ostream& out, PointFormat format, const VoxelMap& map,
+                         std::span<const VoxelIndex> filled);
+
 /// A sensed point (eq. 1), world frame.
 struct SensedPoint {
   Eigen::Vector3d position_m;

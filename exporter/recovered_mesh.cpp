@@ -7,6 +7,7 @@
 #include <tuple>
 
 #include "exporter/marching_cubes.h"
+#include "exporter/one_voxel_holes.h"
 
 namespace nextview {
 namespace {
@@ -14,13 +15,13 @@ namespace {
 /// What a voxel is to the mesh.
 enum class Matter { Free, Seen, Unseen };
 
-// Whether a voxel lies between two of a label along two axes at least: alone among them, or in a
+// Whether a voxel lies between two Empty ones along two axes at least: alone among them, or in a
 // line.
-bool is_among(const VoxelMap& map, const VoxelIndex& voxel, Label label) {
+bool is_crumb(const VoxelMap& map, const VoxelIndex& voxel) {
   int axes = 0;
   for (int axis = 0; axis < 3; ++axis) {
     const VoxelIndex step = VoxelIndex::Unit(axis);
-    axes += map.label(voxel + step) == label && map.label(voxel - step) == label;
+    axes += map.label(voxel + step) == Label::Empty && map.label(voxel - step) == Label::Empty;
   }
   return axes >= 2;
 }
@@ -30,11 +31,11 @@ Matter matter_of(const VoxelMap& map, const VoxelIndex& voxel) {
     case Label::Occupied:
       return Matter::Seen;
     case Label::Empty:
-      return is_among(map, voxel, Label::Occupied) ? Matter::Seen : Matter::Free;
+      return is_one_voxel_hole(map, voxel) ? Matter::Seen : Matter::Free;
     case Label::Unmarked:
     case Label::Occluded:
     case Label::OcclusionPlane:
-      return is_among(map, voxel, Label::Empty) ? Matter::Free : Matter::Unseen;
+      return is_crumb(map, voxel) ? Matter::Free : Matter::Unseen;
   }
   return Matter::Unseen;
 }

@@ -17,9 +17,9 @@ namespace nextview {
 ///   edge in opposite directions.
 /// - No triangle is lower than a hundredth of a voxel: a vertex whose move would flatten one, or
 ///   turn it over, is moved less.
-/// - Of one voxel only, holes are filled (P24) and crumbs taken away: an Empty voxel counts as
-///   Occupied when both its neighbours along two axes at least are, and an unseen one likewise as
-///   Empty. The map itself stays as it is.
+/// - Of one voxel only, holes are filled (P24, one_voxel_holes.h) and crumbs taken away: an unseen
+///   voxel counts as Empty when both its neighbours along two axes at least are. The map itself
+///   stays as it is.
 SurfaceMesh recovered_mesh(const VoxelMap& map, const OrientedPoints& points);
 
 }  // namespace nextview

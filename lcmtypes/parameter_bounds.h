@@ -73,6 +73,7 @@ inline constexpr Bounds kPathCost{"path_cost_per_m", 0.0, 10.0};
 inline constexpr Bounds kLeastOverlap{"least_overlap", 0.0, 0.99};
 inline constexpr Bounds kLeastGain{"least_gain_m2", 0.0, 1e6};
 inline constexpr Bounds kStopNewArea{"stop_new_area_m2", 0.0, 1e6};
+inline constexpr Bounds kStopImprovement{"stop_improvement", 0.0, 1.0};
 
 }  // namespace bounds
 

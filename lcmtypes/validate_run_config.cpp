@@ -89,7 +89,7 @@ void check_planner(Checks& checks, const planner_config_t& planner) {
   checks.within(bounds::kMaxAttempts, planner.max_attempts);
   checks.require(planner.quality_weight == 0.0 || planner.quality_weight == 1.0,
                  "quality_weight is neither 0 nor 1");
-  checks.require(planner.stop_rule == 1 || planner.stop_rule == 2, "stop_rule is not 1 or 2");
+  checks.require(planner.stop_rule >= 1 && planner.stop_rule <= 3, "stop_rule is not 1, 2 or 3");
   if (planner.prediction_columns != 0 || planner.prediction_rows != 0) {
     checks.within(bounds::kPredictionRays, planner.prediction_columns);
     checks.within(bounds::kPredictionRays, planner.prediction_rows);

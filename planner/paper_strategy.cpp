@@ -202,14 +202,12 @@ KnownSpace::Surfaces PaperStrategy::surfaces() const {
 void PaperStrategy::view_folded(const FoldedView& folded) {
   const std::vector<std::uint32_t>& changed = folded.report.changed_slots;
   changed_slots_.insert(changed_slots_.end(), changed.begin(), changed.end());
-  views_.push_back(
-      view_facts(folded.report.newly_occupied, voxel_size_m_, folded.statistics.min_quality));
+  views_.push_back(view_facts(folded.report, folded.statistics, voxel_size_m_));
 }
 
 std::optional<Ending> PaperStrategy::ending() const {
   const std::optional<StopReason> reason = should_stop(views_, stop_);
-  // That nothing new is to be seen is for a last look to say.
-  if (!reason || *reason == StopReason::NothingNew) return std::nullopt;
+  if (reason != StopReason::QualityReached) return std::nullopt;
   return Ending{*reason, std::string(describe(*reason))};
 }
 
@@ -233,17 +231,16 @@ NextView PaperStrategy::next_view(const Situation& situation) {
   return next;
 }
 
-NextView PaperStrategy::last_look(const Situation& situation) {
+NextView PaperStrategy::last_look(const Situation& situation, StopReason otherwise) {
   paths_.find_all();
   ViewEvaluator evaluator(situation.space, *predictor_, {}, situation.present);
   ViewEvaluator coarse(situation.space, *coarse_predictor_, {}, situation.present);
   const std::optional<LastLook::View> found =
       last_look_.best_view(situation, paths_, coarse, evaluator);
   if (!found) {
-    return Ending{StopReason::NothingNew,
-                  std::string(describe(StopReason::NothingNew)) + " From none of " +
-                      std::to_string(last_look_.voxels_asked()) +
-                      " positions that can be reached a view has a fitness above 0.6."};
+    return Ending{otherwise, std::string(describe(otherwise)) + " From none of " +
+                                 std::to_string(last_look_.voxels_asked()) +
+                                 " positions that can be reached a view has a fitness above 0.6."};
   }
   const VoxelGrid& grid = situation.space.map().grid();
   const auto position_m = [&](const VoxelIndex& voxel) {
@@ -268,7 +265,8 @@ NextView PaperStrategy::last_look(const Situation& situation) {
 }
 
 NextView PaperStrategy::decided(const Situation& situation) {
-  if (should_stop(views_, stop_) == StopReason::NothingNew) return last_look(situation);
+  // A good view anywhere says that more unseen area is to be covered, which no rule knows.
+  if (const auto reason = should_stop(views_, stop_)) return last_look(situation, *reason);
   std::optional<Decision> decision = decide_by_simplex(situation, paths_, *predictor_, search_);
   if (decision) return *std::move(decision);
   return Ending{StopReason::NoFeasibleGoal, "view " + std::to_string(situation.view) +

@@ -41,8 +41,8 @@ std::optional<Decision> decide_by_simplex(const Situation& situation, ShortestPa
                                           ViewPredictor& predictor,
                                           const PlannerParameters& parameters);
 
-/// The paper's method, section 5: the simplex, and the rules that end a run (P23). Before rule 1
-/// ends it, a good view is looked for from everywhere (LastLook), and the run goes on from the
+/// The paper's method, section 5: the simplex, and the rules that end a run (P23). Before rule 1 or
+/// 3 ends it, a good view is looked for from everywhere (LastLook), and the run goes on from the
 /// best.
 class PaperStrategy : public Strategy {
  public:
@@ -51,7 +51,8 @@ class PaperStrategy : public Strategy {
                                         .views = 60,
                                         .views_with_quality = 300,
                                         .directions = 20,
-                                        .ends_by_least_gain = false};
+                                        .ends_by_least_gain = false,
+                                        .ends_by_stop_rule = true};
   static std::unique_ptr<Strategy> make(const StrategyInputs& inputs);
 
   /// @param voxel_size_m of the map, for areas
@@ -69,7 +70,7 @@ class PaperStrategy : public Strategy {
  private:
   void follow_map(const VoxelMap& map);
   NextView decided(const Situation& situation);
-  NextView last_look(const Situation& situation);
+  NextView last_look(const Situation& situation, StopReason otherwise);
 
   PlannerParameters search_;
   StopParameters stop_;

@@ -33,10 +33,11 @@ PlannerParameters planner_parameters_of(const run_config_t& config) {
 }
 
 StopParameters stop_parameters_of(const run_config_t& config) {
-  return {.use_quality = config.planner.stop_rule == 2,
+  return {.rule = StopRule{config.planner.stop_rule},
           .quality_threshold = config.planner.quality_threshold,
           .stop_window_views = config.planner.stop_window_views,
-          .stop_new_area_m2 = config.planner.stop_new_area_m2};
+          .stop_new_area_m2 = config.planner.stop_new_area_m2,
+          .stop_improvement = StopParameters{}.stop_improvement};
 }
 
 std::vector<Orientation> orientations_of(const run_config_t& config) {
@@ -74,6 +75,16 @@ SurfaceParameters surface_parameters_of(const run_config_t& config) {
   return parameters;
 }
 
+TidyUpParameters tidy_up_parameters_of(const run_config_t& config) {
+  TidyUpParameters parameters;
+  parameters.view.field = field_of_view(make_ray_table(sensor_of(config)));
+  parameters.view.range_min_m = range_limits_of(config).min_m;
+  parameters.view.range_max_m = range_limits_of(config).max_m;
+  parameters.view.path_cost_per_m = config.planner.path_cost_per_m;
+  parameters.feasibility = feasibility_of(config);
+  return parameters;
+}
+
 StrategyInputs strategy_inputs_of(const run_config_t& config) {
   return {.voxel_size_m = config.map.voxel_size_m,
           .raster = raster_of(config),
@@ -82,7 +93,8 @@ StrategyInputs strategy_inputs_of(const run_config_t& config) {
           .threads = config.planner.threads,
           .search = planner_parameters_of(config),
           .stop = stop_parameters_of(config),
-          .surface = surface_parameters_of(config)};
+          .surface = surface_parameters_of(config),
+          .tidy_up = tidy_up_parameters_of(config)};
 }
 
 }  // namespace

@@ -19,6 +19,8 @@ struct StrategyFacts {
   /// It ends the run when no view shows more than planner_config_t's least_gain_m2. No view shows
   /// less than nothing, so with 0 such a run would never end by itself.
   bool ends_by_least_gain;
+  /// It ends the run by planner_config_t's stop_rule (P23).
+  bool ends_by_stop_rule = false;
 };
 
 /// Of all strategies, in the order of planner/strategy_list.h.

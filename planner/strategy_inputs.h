@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "planner/paper_strategy.h"
+#include "planner/paper_tidy_up_strategy.h"
 #include "planner/prediction/orientations.h"
 #include "planner/prediction/view_predictor.h"
 #include "planner/surface_strategy.h"
@@ -12,7 +13,7 @@
 namespace nextview {
 
 /// What a strategy may be made of. A strategy takes what it needs of it; where the robot may be is
-/// in `search` and in `surface`.
+/// in `search`, in `surface` and in `tidy_up`.
 struct StrategyInputs {
   double voxel_size_m = 0.10;             ///< of the map
   PredictionRaster raster;                ///< the rays a view is predicted with
@@ -22,6 +23,7 @@ struct StrategyInputs {
   PlannerParameters search;               ///< of a simplex
   StopParameters stop;                    ///< the paper's rules
   SurfaceParameters surface;              ///< of what looks for surface
+  TidyUpParameters tidy_up;               ///< of what looks for holes
 };
 
 /// The strategy of that name.

@@ -5,6 +5,7 @@
 #include <string_view>
 
 #include "planner/paper_strategy.h"
+#include "planner/paper_tidy_up_strategy.h"
 #include "planner/strategy.h"
 #include "planner/strategy_facts.h"
 #include "planner/surface_strategy.h"
@@ -32,6 +33,7 @@ struct StrategyTypes {
 // clang-format off
 using AllStrategies = StrategyTypes<
     PaperStrategy,
+    PaperTidyUpStrategy,
     SurfaceStrategy
 >;
 // clang-format on

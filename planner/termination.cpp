@@ -9,11 +9,14 @@ namespace nextview {
 
 namespace {
 
-constexpr std::array<StopReason, 10> kStopReasons = {
-    StopReason::NothingLeft, StopReason::NothingNew,     StopReason::QualityReached,
-    StopReason::ViewLimit,   StopReason::NoFeasibleGoal, StopReason::DigestMismatch,
-    StopReason::NoAnswer,    StopReason::ProcessDied,    StopReason::BusFailed,
-    StopReason::Interrupted};
+constexpr std::array<StopReason, 11> kStopReasons = {
+    StopReason::NothingLeft,    StopReason::NothingNew, StopReason::QualityReached,
+    StopReason::NoImprovement,  StopReason::ViewLimit,  StopReason::NoFeasibleGoal,
+    StopReason::DigestMismatch, StopReason::NoAnswer,   StopReason::ProcessDied,
+    StopReason::BusFailed,      StopReason::Interrupted};
+
+constexpr std::array<StopRule, 3> kStopRules = {StopRule::NothingNew, StopRule::Quality,
+                                                StopRule::NoImprovement};
 
 bool nothing_new(std::span<const ViewFacts> views, const StopParameters& parameters) {
   const auto window = static_cast<std::size_t>(parameters.stop_window_views);
@@ -21,6 +24,14 @@ bool nothing_new(std::span<const ViewFacts> views, const StopParameters& paramet
   double area_m2 = 0.0;
   for (const ViewFacts& view : views.last(window)) area_m2 += view.newly_occupied_area_m2;
   return area_m2 < parameters.stop_new_area_m2;
+}
+
+// Of more views than the window has. The mean falls a little when a surface comes in that is first
+// seen at a slant; that is no improvement either.
+bool no_improvement(std::span<const ViewFacts> views, const StopParameters& parameters) {
+  const auto window = static_cast<std::size_t>(parameters.stop_window_views);
+  const double before = views[views.size() - window - 1].mean_quality;
+  return views.back().mean_quality - before < parameters.stop_improvement;
 }
 
 }  // namespace
@@ -35,6 +46,8 @@ std::string_view to_string(StopReason reason) {
       return "nothing_new";
     case StopReason::QualityReached:
       return "quality_reached";
+    case StopReason::NoImprovement:
+      return "no_improvement";
     case StopReason::ViewLimit:
       return "view_limit";
     case StopReason::NoFeasibleGoal:
@@ -68,6 +81,8 @@ std::string_view describe(StopReason reason) {
       return "No more unseen area is covered.";
     case StopReason::QualityReached:
       return "No more unseen area is covered, and every voxel's quality is above the threshold.";
+    case StopReason::NoImprovement:
+      return "No more unseen area is covered, and quality improves no more.";
     case StopReason::ViewLimit:
       return "As many views as asked for have been taken.";
     case StopReason::NoFeasibleGoal:
@@ -86,23 +101,54 @@ std::string_view describe(StopReason reason) {
   throw std::invalid_argument("not a stop reason");
 }
 
+std::span<const StopRule> all_stop_rules() { return kStopRules; }
+
+std::string_view to_string(StopRule rule) {
+  switch (rule) {
+    case StopRule::NothingNew:
+      return "nothing_new";
+    case StopRule::Quality:
+      return "quality";
+    case StopRule::NoImprovement:
+      return "no_improvement";
+  }
+  throw std::invalid_argument("not a stop rule");
+}
+
+std::optional<StopRule> stop_rule_from_string(std::string_view name) {
+  for (const StopRule rule : kStopRules) {
+    if (to_string(rule) == name) return rule;
+  }
+  return std::nullopt;
+}
+
 void StopParameters::check() const {
+  to_string(rule);
   bounds::kQualityThreshold.require(quality_threshold);
   bounds::kStopWindow.require(stop_window_views);
   bounds::kStopNewArea.require(stop_new_area_m2);
+  bounds::kStopImprovement.require(stop_improvement);
 }
 
-ViewFacts view_facts(std::int64_t newly_occupied_voxels, double voxel_size_m, double min_quality) {
-  return {static_cast<double>(newly_occupied_voxels) * voxel_size_m * voxel_size_m, min_quality};
+ViewFacts view_facts(const FoldReport& report, const MapStatistics& after, double voxel_size_m) {
+  return {static_cast<double>(report.newly_occupied) * voxel_size_m * voxel_size_m,
+          after.min_quality, after.mean_quality};
 }
 
 std::optional<StopReason> should_stop(std::span<const ViewFacts> views,
                                       const StopParameters& parameters) {
-  if (nothing_new(views, parameters)) {
-    if (!parameters.use_quality) return StopReason::NothingNew;
-    if (views.back().min_quality >= parameters.quality_threshold) return StopReason::QualityReached;
+  if (!nothing_new(views, parameters)) return std::nullopt;
+  switch (parameters.rule) {
+    case StopRule::NothingNew:
+      return StopReason::NothingNew;
+    case StopRule::Quality:
+      if (views.back().min_quality < parameters.quality_threshold) return std::nullopt;
+      return StopReason::QualityReached;
+    case StopRule::NoImprovement:
+      if (!no_improvement(views, parameters)) return std::nullopt;
+      return StopReason::NoImprovement;
   }
-  return std::nullopt;
+  throw std::invalid_argument("not a stop rule");
 }
 
 }  // namespace nextview

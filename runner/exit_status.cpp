@@ -9,6 +9,7 @@ int exit_status(StopReason reason) {
     case StopReason::NothingLeft:
     case StopReason::NothingNew:
     case StopReason::QualityReached:
+    case StopReason::NoImprovement:
     case StopReason::ViewLimit:
       return 0;
     case StopReason::NoFeasibleGoal:

@@ -256,6 +256,12 @@ void add_map_options(CLI::App& app, RunOptions& options) {
       ->group(group);
 }
 
+std::vector<std::string> stop_rule_names() {
+  std::vector<std::string> names;
+  for (const StopRule rule : all_stop_rules()) names.emplace_back(to_string(rule));
+  return names;
+}
+
 void add_planner_options(CLI::App& app, RunOptions& options) {
   const std::string group = "Planner";
   app.add_option("--strategy", options.strategy,
@@ -266,8 +272,8 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
       ->capture_default_str()
       ->group(group);
   app.add_option("--path-cost", options.path_cost_per_m,
-                 "surface: trades views against metres; a way of d metres makes a view worth "
-                 "exp(-COST d) of what it shows, 0: fewest views")
+                 "surface, paper_tidy_up: trades views against metres; a way of d metres makes a "
+                 "view worth exp(-COST d) of what it shows, 0: fewest views")
       ->check(number_within(bounds::kPathCost))
       ->capture_default_str()
       ->group(group);
@@ -336,13 +342,21 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
       ->check(number_within(bounds::kMaxAttempts))
       ->capture_default_str()
       ->group(group);
+  app.add_option(
+         "--stop-rule", options.stop_rule,
+         "By what strategies of the paper's end: nothing_new, nothing new is covered; quality, the "
+         "same, and every voxel's quality is at --quality-threshold; no_improvement, the same, and "
+         "the mean quality has risen by less than 0.002; default nothing_new, with --quality "
+         "quality")
+      ->check(CLI::IsMember(stop_rule_names()))
+      ->group(group);
   app.add_option("--quality-threshold", options.quality_threshold,
-                 "With --quality: the quality every voxel should reach, 0 to 1")
+                 "Rule quality: the quality every voxel should reach, 0 to 1")
       ->check(number_within(bounds::kQualityThreshold))
       ->capture_default_str()
       ->group(group);
   app.add_option("--stop-window", options.stop_window_views,
-                 "The run ends when over this many views ...")
+                 "Nothing new is covered when over this many views ...")
       ->check(number_within(bounds::kStopWindow))
       ->capture_default_str()
       ->group(group);

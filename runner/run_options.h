@@ -66,6 +66,7 @@ struct RunOptions {
   double fitness_tolerance = PlannerParameters{}.fitness_tolerance;
   int max_evaluations = PlannerParameters{}.max_evaluations;
   int max_attempts = 5;
+  std::string stop_rule;  ///< empty: nothing_new, with quality the rule quality
   double quality_threshold = StopParameters{}.quality_threshold;
   int stop_window_views = StopParameters{}.stop_window_views;
   double stop_new_area_m2 = StopParameters{}.stop_new_area_m2;

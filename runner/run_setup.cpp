@@ -169,6 +169,18 @@ void fill_map(run_config_t& config, const RunOptions& options, const Eigen::Alig
   }
 }
 
+/// As the command line says, else as the paper has it.
+StopRule stop_rule_of(const RunOptions& options, const StrategyFacts& strategy) {
+  if (options.stop_rule.empty()) return options.quality ? StopRule::Quality : StopRule::NothingNew;
+  if (!strategy.ends_by_stop_rule && options.planner.empty()) {
+    throw SetupError(fmt::format("--stop-rule: --strategy {} ends by itself, without these rules",
+                                 strategy.name));
+  }
+  const auto rule = stop_rule_from_string(options.stop_rule);
+  if (!rule) throw SetupError("--stop-rule: there is no rule '" + options.stop_rule + "'");
+  return *rule;
+}
+
 void fill_planner(run_config_t& config, const RunOptions& options) {
   if (options.step_min_m > options.step_max_m) {
     throw SetupError("--step-min must not be above --step-max");
@@ -179,7 +191,7 @@ void fill_planner(run_config_t& config, const RunOptions& options) {
       options.views.value_or(options.quality ? strategy->views_with_quality : strategy->views);
   config.planner.max_attempts = options.max_attempts;
   config.planner.quality_weight = options.quality ? 1.0 : 0.0;
-  config.planner.stop_rule = options.quality ? 2 : 1;
+  config.planner.stop_rule = static_cast<std::int8_t>(stop_rule_of(options, *strategy));
   config.planner.quality_threshold = options.quality_threshold;
   config.planner.clearance_m = options.clearance_m;
   config.planner.departure_m = options.departure_m;

@@ -35,7 +35,7 @@ const label = (run, i) => {
 
 // Tables.
 
-const kGoodEnds = ["nothing_left", "nothing_new", "quality_reached", "view_limit"];
+const kGoodEnds = ["nothing_left", "nothing_new", "quality_reached", "no_improvement", "view_limit"];
 const kMegabyte = 1048576;
 const peakMemory = (run) => {
   const peaks = Object.values(run.summary?.peak_memory_bytes ?? {});

@@ -9,6 +9,7 @@
 
 #include "exporter/foxglove_json.h"
 #include "exporter/mcap_writer.h"
+#include "exporter/one_voxel_holes.h"
 #include "exporter/point_clouds.h"
 #include "logger/recovered_run.h"
 #include "tests/exporter/exported.h"
@@ -78,6 +79,24 @@ TEST(OctoMapTree, IsWhatOctoMapsOwnToolReads) {
   }
   EXPECT_GT(occupied, 500);
   EXPECT_EQ(volume, occupied * 8 * 8 * 8) << "no Occupied voxel is missing";
+}
+
+TEST(OctoMapTree, HasTheHolesOfOneVoxelFilledWhenAskedFor) {
+  NEXTVIEW_NEEDS_PROGRAM("bt2vrml", "octomap-tools");
+  const TemporaryFolder folder;
+  const RecoveredRun run = recover_run(short_log());
+  const auto cells = [&](const std::vector<std::string>& more) {
+    const std::string file = exported(folder, "octomap.bt", short_log(), more).string();
+    EXPECT_EQ(run_program({"/usr/bin/env", "bt2vrml", file}).status, 0);
+    std::int64_t volume = 0;
+    const double eighth_m = run.builder.map().grid().voxel_size_m / 8.0;
+    for (const auto& [middle, side] : cubes_of(folder / "octomap.bt.wrl", eighth_m)) {
+      volume += std::int64_t{side} * side * side;
+    }
+    return volume;
+  };
+  const auto holes = static_cast<std::int64_t>(one_voxel_holes(run.builder.map()).size());
+  EXPECT_EQ(cells({"--fill-holes"}), cells({}) + holes * 8 * 8 * 8);
 }
 
 /// OctoMap reads the whole tree, free space too, and finds it equal to itself.

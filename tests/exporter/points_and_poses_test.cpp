@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 
+#include "exporter/one_voxel_holes.h"
 #include "exporter/point_clouds.h"
 #include "exporter/trajectory.h"
 #include "logger/recovered_run.h"
@@ -76,6 +77,27 @@ TEST(OccupiedVoxels, AreWhatPythonReadsFromPlyAndPcd) {
     expect_range(said, "z", z);
     expect_range(said, normal_name, normal_z);
     expect_range(said, "quality", quality);
+  }
+}
+
+TEST(OccupiedVoxels, ComeWithTheHolesOfOneVoxelWhenAskedFor) {
+  NEXTVIEW_NEEDS_PROGRAM("python3", "python3");
+  const TemporaryFolder folder;
+  const RecoveredRun run = recover_run(short_log());
+  const std::size_t holes = one_voxel_holes(run.builder.map()).size();
+  ASSERT_GT(holes, 0U) << "the coarse sensor of the log leaves some";
+  for (const std::string format : {"voxels.ply", "voxels.pcd"}) {
+    const auto read = [&](const std::vector<std::string>& more) {
+      return say({"/usr/bin/env", "python3", python_reader(),
+                  exported(folder, format, short_log(), more).string()});
+    };
+    const Said sensed = read({});
+    const Said filled = read({"--fill-holes"});
+    EXPECT_FALSE(sensed.contains("filled"));
+    EXPECT_EQ(std::stoul(filled.at("points").at(0)), std::stoul(sensed.at("points").at(0)) + holes);
+    EXPECT_EQ(filled.at("filled"), (std::vector<std::string>{"0", "1", std::to_string(holes)}));
+    EXPECT_EQ(filled.at("bytes_left").at(0), "0");
+    EXPECT_EQ(filled.at("quality").at(2), sensed.at("quality").at(2)) << "they have none";
   }
 }
 

@@ -323,7 +323,7 @@ TEST(Validate, RunConfig) {
       {"an origin out of this world", [](run_config_t& m) { m.scene.origin_in_file_m[1] = 2e9; }},
       {"half the quality", [](run_config_t& m) { m.planner.quality_weight = 0.5; }},
       {"no rule to stop by", [](run_config_t& m) { m.planner.stop_rule = 0; }},
-      {"the third rule", [](run_config_t& m) { m.planner.stop_rule = 3; }},
+      {"a fourth rule", [](run_config_t& m) { m.planner.stop_rule = 4; }},
       {"columns to predict with", [](run_config_t& m) { m.planner.prediction_columns = 32; }},
       {"rows to predict with", [](run_config_t& m) { m.planner.prediction_rows = 32; }},
       {"structure", [](run_config_t& m) { m.planner.structure_weight = 1.0; }},

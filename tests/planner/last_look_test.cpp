@@ -187,7 +187,7 @@ PaperRun recover(const TriangleMesh& mesh, std::int64_t seed, const StopParamete
   while (!run.ending) {
     RandomStream no_noise(seed, planner.views() + 1, 1, RandomPurpose::RangeNoise);
     const FoldReport& report = planner.fold(scan(scene, rays, RangeLimits(), pose, 0.0, no_noise));
-    facts.push_back(view_facts(report.newly_occupied, kVoxel_m, 0.0));
+    facts.push_back(view_facts(report, planner.builder().statistics(), kVoxel_m));
     run.occupied_m2 += facts.back().newly_occupied_area_m2;
     run.views = planner.views();
     if (run.rule_alone_ends_at == 0 && should_stop(facts, stop)) {

@@ -66,6 +66,40 @@ TEST(RunSetup, WithQualityTakesMoreViews) {
   EXPECT_EQ(prepare_run(options).config.planner.max_views, 7);
 }
 
+TEST(RunSetup, AStopRuleIsGivenByName) {
+  RunOptions options = boxes();
+  options.quality = true;
+  EXPECT_EQ(prepare_run(options).config.planner.stop_rule, 2);
+  int number = 0;
+  for (const char* name : {"nothing_new", "quality", "no_improvement"}) {
+    options.stop_rule = name;
+    const run_config_t config = prepare_run(options).config;
+    EXPECT_EQ(config.planner.stop_rule, ++number);
+    EXPECT_EQ(config.planner.quality_weight, 1.0);
+    EXPECT_EQ(check(config), "");
+  }
+  options.stop_rule = "boredom";
+  EXPECT_THROW(prepare_run(options), SetupError);
+}
+
+TEST(RunSetup, AStopRuleIsNotIgnored) {
+  RunOptions options = boxes();
+  options.strategy = "surface";
+  options.stop_rule = "nothing_new";
+  EXPECT_THROW(prepare_run(options), SetupError);
+  options.planner = "/a/planner/of/ones/own";
+  EXPECT_EQ(prepare_run(options).config.planner.stop_rule, 1);
+}
+
+TEST(RunSetup, TidyingUpTakesThePapersOrientationsAndEndsByItself) {
+  RunOptions options = boxes();
+  options.strategy = "paper_tidy_up";
+  const run_config_t config = prepare_run(options).config;
+  EXPECT_EQ(check(config), "");
+  EXPECT_EQ(config.planner.directions, 20);
+  EXPECT_EQ(config.planner.max_views, 1000);
+}
+
 TEST(RunSetup, TheCommandLineWinsOverTheScene) {
   RunOptions options = boxes();
   options.start_m = {0.8, 1.1, 1.3};
