@@ -72,6 +72,7 @@ Recording record_run() {
   run_bus.publish(config);
   run_bus.request<status_t>(0, 0);
   mapper_bus.publish(example<status_t>());
+  mapper_bus.publish(example<map_blocks_t>());
   const auto turn = [&] {
     bool worked = planner.step();
     worked |= sensor.step();
