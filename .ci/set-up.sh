@@ -8,6 +8,16 @@ fail() {
   exit 1
 }
 
+# tell_version NAME ARGUMENT...: when --version is what was typed, says what every program says, and that is all.
+tell_version() {
+  [ "${2-}" = --version ] || return 0
+  local version commit
+  version=$(sed -n 's/^project(nextview VERSION \([^ ]*\).*/\1/p' "$root/CMakeLists.txt")
+  commit=$(git -C "$root" describe --always --dirty=+ --abbrev=12 --exclude='*' 2> /dev/null) || true
+  echo "$1 $version${commit:+ $commit}"
+  exit 0
+}
+
 # A freshly booted machine installs its updates first.
 apt_patience_s=600
 
@@ -74,7 +84,8 @@ configure() {
 
 # build_target TARGET: says nothing when it is up to date.
 build_target() {
-  if ninja -C "$build" -n "$1" 2> /dev/null | grep -q 'no work to do'; then
+  # As a rule there is nothing to do but to ask for the commit. What takes longer, or fails, is shown.
+  if timeout 3 ninja --quiet -C "$build" "$1" > "$install_log" 2>&1; then
     return
   fi
   echo "Building nextview in $build (the first time takes some minutes)"

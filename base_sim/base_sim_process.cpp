@@ -41,14 +41,20 @@ BaseLimits base_limits_of(const run_config_t& config) {
 }
 
 BaseSimProcess::BaseSimProcess(Bus& bus, const run_config_t& config,
-                               const std::function<bool()>& interrupted)
+                               const std::function<bool()>& interrupted, double real_time)
     : bus_(bus),
       scene_(load_scene(config, interrupted)),
-      base_(base_limits_of(config), start_pose_of(config), scene_) {
+      base_(base_limits_of(config), start_pose_of(config), scene_),
+      real_time_(real_time) {
   bus_.on<goal_t>([this](const goal_t& goal) { goals_[key_of(goal)] = goal; });
 }
 
 bool BaseSimProcess::step() {
+  if (moved_) {
+    if (!real_time_.is_over()) return false;
+    publish_moved();
+    return true;
+  }
   // Where the base is depends on every goal before, so they are carried out in order, whatever the
   // order they come in. A base that was restarted in mid-run asks for the first ones again, gets
   // to the same place and says the same of them as before.
@@ -59,19 +65,34 @@ bool BaseSimProcess::step() {
   }
   const goal_t goal = found->second;
   goals_.erase(found);
+  move_to(goal);
+  return true;
+}
 
+void BaseSimProcess::move_to(const goal_t& goal) {
   std::vector<Eigen::Vector3d> waypoints_m;
   for (const auto& waypoint : goal.waypoint_m) waypoints_m.emplace_back(waypoint.data());
   const SensorPose pose{Eigen::Vector3d(goal.position_m), goal.pan_rad, goal.tilt_rad};
   const auto start = std::chrono::steady_clock::now();
   const Motion motion = base_.move(waypoints_m, pose);
   const std::chrono::duration<double> wall = std::chrono::steady_clock::now() - start;
-  bus_.publish(arrival_message(goal, motion));
-  bus_.publish(
+  moved_.emplace(
+      arrival_message(goal, motion),
       timing_message(bus_.role(), goal.utime, goal.view, goal.attempt, {{"move", wall.count()}}));
+  real_time_.begin(motion.duration_s);
+  if (real_time_.is_over()) publish_moved();
   next_ = motion.arrived ? MessageKey{.view = goal.view + 1, .attempt = 1}
                          : MessageKey{.view = goal.view, .attempt = goal.attempt + 1};
-  return true;
+}
+
+void BaseSimProcess::publish_moved() {
+  bus_.publish(moved_->first);
+  bus_.publish(moved_->second);
+  moved_.reset();
+}
+
+std::chrono::milliseconds BaseSimProcess::longest_wait() const {
+  return moved_ ? real_time_.left() : BusProcess::longest_wait();
 }
 
 void BaseSimProcess::ask_again() {
@@ -82,7 +103,8 @@ void BaseSimProcess::ask_again() {
 }
 
 void BaseSimProcess::on_missing(const request_t& request) {
-  if (request.wanted_channel == Channel<arrival_t>::name) {
+  const bool on_the_way = moved_ && moved_->first.view == request.view;
+  if (request.wanted_channel == Channel<arrival_t>::name && !on_the_way) {
     bus_.request<goal_t>(request.view, request.attempt);
   }
 }

@@ -18,6 +18,7 @@
 #include "base_sim/base.h"
 #include "base_sim/base_sim_process.h"
 #include "bench/stopwatch.h"
+#include "lcmtypes/tell_version.h"
 #include "planner/planner_config.h"
 #include "reports/median.h"
 #include "runner/run_options.h"
@@ -237,6 +238,7 @@ int figures(int argc, char** argv) {
 }  // namespace nextview
 
 int main(int argc, char** argv) {
+  if (nextview::tell_version(argc, argv)) return 0;
   try {
     return nextview::figures(argc, argv);
   } catch (const std::exception& error) {

@@ -13,6 +13,7 @@
 #include <string>
 #include <vector>
 
+#include "lcmtypes/program_version.h"
 #include "reports/median.h"
 
 namespace {
@@ -259,6 +260,8 @@ int main(int argc, char** argv) {
       ->required()
       ->check(CLI::ExistingFile);
   app.add_option("--merge", merged, "Write them as one to this file");
+  app.set_version_flag("--version",
+                       "nextview_bench_table " + std::string(nextview::program_version()));
   CLI11_PARSE(app, argc, argv);
   Json json;
   for (const std::string& file : files) {

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 #include <csignal>
+#include <filesystem>
 #include <iostream>
 #include <optional>
 
@@ -27,7 +28,7 @@ void end_on_signals() {
 bool end_requested() { return stop_requested != 0; }
 
 int run_bus_process(int argc, char** argv, const std::string& role, const std::string& about,
-                    const MakeBusProcess& make) {
+                    const MakeBusProcess& make, double* real_time) {
   CLI::App app{about};
   std::string lcm_url;
   std::int64_t run = 0;
@@ -36,7 +37,14 @@ int run_bus_process(int argc, char** argv, const std::string& role, const std::s
                  "LCM_DEFAULT_URL is used, else LCM's default");
   app.add_option("--run", run, "The run to take part in; messages of other runs are ignored")
       ->required();
-  app.set_version_flag("--version", "nextview_" + role + " " + std::string(program_version()));
+  if (real_time != nullptr) {
+    app.add_option("--real-time", *real_time,
+                   "Simulated seconds a second, for watching; what is said is the same. 0: at once")
+        ->check(CLI::Range(0.0, 1e6))
+        ->capture_default_str();
+  }
+  const std::string program = std::filesystem::path(argv[0]).filename();
+  app.set_version_flag("--version", program + " " + std::string(program_version()));
   app.footer(
       "Everything else comes from the run's configuration, NEXTVIEW_RUN_CONFIG on the bus,\n"
       "which is asked for until somebody publishes it. SIGINT and SIGTERM end the process\n"

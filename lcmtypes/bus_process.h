@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <memory>
 #include <string>
@@ -16,6 +17,10 @@ class BusProcess {
 
   /// Does the next piece of work that is ready; false when it has to wait for a message.
   virtual bool step() = 0;
+  /// How long it may be left waiting for a message before its next step.
+  virtual std::chrono::milliseconds longest_wait() const {
+    return std::chrono::milliseconds::max();
+  }
   /// Requests what it waits for. Called on a timer, ever less often until something comes.
   virtual void ask_again() {}
   /// Somebody waits for a message that has not been published: asks for its own input when the
@@ -34,9 +39,10 @@ bool end_requested();
 /// configuration until it comes, makes the process, says by a status_t that it is there, and serves
 /// the bus until SIGINT or SIGTERM. Answers requests for status_t.
 /// @param about what --help says first
+/// @param real_time of a simulator: takes --real-time, see RealTime, before the process is made
 /// @return the exit status: 0 after a signal; 1 after an error, which is printed in one line and
 ///         published in a status_t; CLI11's after a wrong command line
 int run_bus_process(int argc, char** argv, const std::string& role, const std::string& about,
-                    const MakeBusProcess& make);
+                    const MakeBusProcess& make, double* real_time = nullptr);
 
 }  // namespace nextview

@@ -6,6 +6,7 @@
 #include <nextview/arrival_t.hpp>
 #include <nextview/commit_t.hpp>
 #include <nextview/goal_t.hpp>
+#include <nextview/map_blocks_t.hpp>
 #include <nextview/range_image_t.hpp>
 #include <nextview/request_t.hpp>
 #include <nextview/run_config_t.hpp>
@@ -29,13 +30,13 @@ struct TypeList {
 /// Every type of message. Whoever handles all of them goes by this list: for_each_channel, the
 /// encoder, the tests of every type. A test holds it against the .lcm files of this folder.
 using AllMessages = TypeList<run_config_t, goal_t, search_t, arrival_t, range_image_t, commit_t,
-                             stop_t, status_t, request_t, timing_t>;
+                             stop_t, status_t, request_t, timing_t, map_blocks_t>;
 
 /// What tells the messages of one channel of one run apart.
 struct MessageKey {
   std::int32_t view = 0;     ///< 0 for messages that belong to no view
   std::int32_t attempt = 0;  ///< likewise
-  std::int32_t part = 0;     ///< of a range image
+  std::int32_t part = 0;     ///< of a range image, or of blocks of the map
   auto operator<=>(const MessageKey&) const = default;
 };
 
@@ -145,6 +146,17 @@ struct Channel<timing_t> {
   static constexpr bool answered = false;
   static constexpr std::array<LengthField, 1> lengths = {{{channel_detail::kFirstLength, 8}}};
   static constexpr int strings = 2;
+};
+
+/// Made afresh for whoever asks: what has changed in the map depends on when that is.
+template <>
+struct Channel<map_blocks_t> {
+  static constexpr std::string_view name = "NEXTVIEW_MAP_BLOCKS";
+  static constexpr bool answered = false;
+  static constexpr std::array<LengthField, 2> lengths = {
+      {{channel_detail::kFirstLength, 12 + 512},      // blocks: an index and 512 labels
+       {channel_detail::kFirstLength + 4, 12 + 4}}};  // surfaces: a normal and a quality
+  static constexpr int strings = 0;
 };
 
 namespace channel_detail {

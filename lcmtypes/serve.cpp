@@ -2,6 +2,7 @@
 
 #include <sys/resource.h>
 
+#include <algorithm>
 #include <optional>
 
 #include "lcmtypes/ask_timer.h"
@@ -65,7 +66,7 @@ void serve(Bus& bus, const MakeBusProcess& make, const std::function<bool()>& en
       continue;
     }
     const std::int64_t delivered = bus.counters().delivered;
-    bus.handle(timer.left());
+    bus.handle(std::min(timer.left(), process->longest_wait()));
     if (bus.counters().delivered != delivered) {
       timer.restart();
     } else if (timer.due()) {

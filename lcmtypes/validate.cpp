@@ -1,5 +1,7 @@
 #include "lcmtypes/validate.h"
 
+#include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <numbers>
 
@@ -79,6 +81,30 @@ void check_names(Checks& checks, std::string_view field, std::string_view list,
         !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") ==
                              std::string_view::npos,
         std::string(field) + " has a name that is no word of a-z, 0-9 and _");
+  }
+}
+
+std::int64_t occupied_in(const map_blocks_t& blocks) {
+  constexpr std::uint8_t kOccupied = 4;
+  std::int64_t occupied = 0;
+  for (const auto& labels : blocks.block_label) {
+    occupied += std::count(labels.begin(), labels.end(), kOccupied);
+  }
+  return occupied;
+}
+
+void check_surfaces(Checks& checks, const map_blocks_t& blocks) {
+  constexpr double kFloatTolerance = 1e-3;
+  checks.require(occupied_in(blocks) == blocks.surfaces,
+                 std::to_string(blocks.surfaces) + " surfaces for " +
+                     std::to_string(occupied_in(blocks)) + " Occupied voxels");
+  for (const auto& normal : blocks.surface_normal) {
+    const double length = Eigen::Vector3f(normal.data()).norm();
+    checks.require(length == 0.0 || std::abs(length - 1.0) <= kFloatTolerance,
+                   "surface_normal is neither a unit vector nor zero");
+  }
+  for (const float quality : blocks.surface_quality) {
+    checks.within("surface_quality", quality, 0.0, 1.0);
   }
 }
 
@@ -210,6 +236,30 @@ std::string check(const timing_t& timing) {
   for (const double duration_s : timing.duration_s) checks.not_negative("duration_s", duration_s);
   checks.require(!timing.role.empty(), "no role");
   check_names(checks, "duration_names", timing.duration_names, timing.duration_s.size());
+  return checks.reason();
+}
+
+std::string check(const map_blocks_t& blocks) {
+  constexpr std::uint8_t kLargestLabel = 4;
+  Checks checks;
+  checks.not_negative("utime", static_cast<double>(blocks.utime));
+  checks.require(
+      blocks.since_view >= 0 && blocks.view >= blocks.since_view,
+      "view " + std::to_string(blocks.view) + " since view " + std::to_string(blocks.since_view));
+  checks.require(blocks.part >= 0 && blocks.part < blocks.parts,
+                 "part " + std::to_string(blocks.part) + " of " + std::to_string(blocks.parts));
+  checks.require(blocks.blocks > 0 || blocks.parts == 1, "an empty part");
+  checks.within(bounds::kVoxelSize, blocks.voxel_size_m);
+  checks.finite("map_origin_m", blocks.map_origin_m);
+  for (const std::int32_t size : blocks.window_size) {
+    checks.require(size >= 1, "window_size " + std::to_string(size));
+  }
+  for (const auto& labels : blocks.block_label) {
+    checks.require(std::all_of(labels.begin(), labels.end(),
+                               [](std::uint8_t label) { return label <= kLargestLabel; }),
+                   "block_label that is no label");
+  }
+  check_surfaces(checks, blocks);
   return checks.reason();
 }
 

@@ -272,6 +272,27 @@ struct MessageFields<timing_t> {
       NamedField{"role", &M::role},       NamedField{"duration_names", &M::duration_names}};
 };
 
+template <>
+struct MessageFields<map_blocks_t> {
+  using M = map_blocks_t;
+  static constexpr auto list = std::tuple{NamedField{"utime", &M::utime},
+                                          NamedField{"blocks", &M::blocks},
+                                          NamedField{"surfaces", &M::surfaces},
+                                          NamedField{"run", &M::run},
+                                          NamedField{"view", &M::view},
+                                          NamedField{"since_view", &M::since_view},
+                                          NamedField{"part", &M::part},
+                                          NamedField{"parts", &M::parts},
+                                          NamedField{"voxel_size_m", &M::voxel_size_m},
+                                          NamedField{"map_origin_m", &M::map_origin_m},
+                                          NamedField{"window_min", &M::window_min},
+                                          NamedField{"window_size", &M::window_size},
+                                          NamedField{"block_index", &M::block_index},
+                                          NamedField{"block_label", &M::block_label},
+                                          NamedField{"surface_normal", &M::surface_normal},
+                                          NamedField{"surface_quality", &M::surface_quality}};
+};
+
 namespace message_fields_detail {
 template <class T>
 concept HasFields = requires {

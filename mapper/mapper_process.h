@@ -1,21 +1,27 @@
 #pragma once
 
+#include <cstdint>
+#include <deque>
 #include <map>
+#include <set>
 #include <string>
 
 #include "lcmtypes/bus_process.h"
+#include "mapper/block_history.h"
 #include "mapper/map_builder.h"
 #include "sensor/range_image_message.h"
 
 namespace nextview {
 
 /// The mapper on the bus: folds every view's range image into the map, in view order, and says with
-/// a commit what the map is then.
+/// a commit what the map is then. Whoever asks gets the blocks of the map that have changed since a
+/// view, when there is nothing to fold.
 class MapperProcess : public BusProcess {
  public:
   MapperProcess(Bus& bus, const run_config_t& config);
 
-  /// Folds the range image of the next view.
+  /// Folds the range image of the next view; else publishes the next part of the map that somebody
+  /// has asked for.
   bool step() override;
   /// Asks for the view that later ones, already here, wait for.
   void ask_again() override;
@@ -23,6 +29,8 @@ class MapperProcess : public BusProcess {
 
  private:
   void receive(const range_image_t& part);
+  void fold(const ReceivedRangeImage& received);
+  bool publish_blocks();
 
   Bus& bus_;
   run_config_t config_;
@@ -31,6 +39,10 @@ class MapperProcess : public BusProcess {
   std::map<int, ReceivedRangeImage> waiting_;  // by view; the first attempt that came whole counts
   int next_view_ = 1;
   std::string history_digest_;  // of the last commit
+  BlockHistory history_;
+  std::int64_t utime_ = 0;           // of the last view
+  std::set<int> blocks_wanted_;      // since these views
+  std::deque<map_blocks_t> blocks_;  // of one answer, still to be published
 };
 
 }  // namespace nextview

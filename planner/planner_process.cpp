@@ -17,7 +17,11 @@ double seconds_between(std::chrono::steady_clock::time_point start,
 }  // namespace
 
 PlannerProcess::PlannerProcess(Bus& bus, const run_config_t& config)
-    : bus_(bus), config_(config), planner_(make_view_planner(config)) {
+    : PlannerProcess(bus, config, make_view_planner(config)) {}
+
+PlannerProcess::PlannerProcess(Bus& bus, const run_config_t& config,
+                               std::unique_ptr<ViewPlanner> planner)
+    : bus_(bus), config_(config), planner_(std::move(planner)) {
   subscribe();
 }
 

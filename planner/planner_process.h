@@ -22,6 +22,8 @@ namespace nextview {
 class PlannerProcess : public BusProcess {
  public:
   PlannerProcess(Bus& bus, const run_config_t& config);
+  /// With a strategy of one's own.
+  PlannerProcess(Bus& bus, const run_config_t& config, std::unique_ptr<ViewPlanner> planner);
 
   /// Takes the run one step on: the first goal; the fold of a range image; the next decision; after
   /// the commit its goal or the end; after a refusal the next attempt.

@@ -16,8 +16,9 @@ import sys
 import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "reports"))
+sys.path[:0] = [str(ROOT / "reports"), str(ROOT / "lcmtypes")]
 import experiment_table  # noqa: E402
+from program_version import program_version  # noqa: E402
 
 DESCRIPTION = """\
 Draws the paper's figures 6, 7, 8 and 9 from runs, as PNG and SVG:
@@ -225,6 +226,7 @@ def main(arguments):
                         help="after how many views figure 9 is; default: 15, the paper's")
     parser.add_argument("--programs", default=str(ROOT / "build" / "release" / "bin"), metavar="DIR",
                         help="folder of nextview_search and nextview_picture")
+    parser.add_argument("--version", action="version", version="%(prog)s " + program_version())
     options = parser.parse_args(arguments)
     if options.recovered_views < 1:
         parser.error("--recovered-views: at least 1")

@@ -13,8 +13,9 @@ import tempfile
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "reports"))
+sys.path[:0] = [str(ROOT / "reports"), str(ROOT / "lcmtypes")]
 import experiment_table  # noqa: E402
+from program_version import program_version  # noqa: E402
 
 NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.+]*")
 HOSTS = ("-S", "--sshlogin", "--slf", "--sshloginfile")
@@ -100,6 +101,7 @@ def parse(arguments):
     parser.add_argument("--dry-run", action="store_true", help="only say which runs there would be")
     parser.add_argument("--programs", default="build/release/bin", metavar="DIR",
                         help="folder of nextview_run; default: build/release/bin")
+    parser.add_argument("--version", action="version", version="%(prog)s " + program_version())
     options = parser.parse_args(arguments[:at])
     if min(options.views) < 1:
         raise UsageError("--views: a run takes at least one view")

@@ -160,6 +160,12 @@ void add_run_options(CLI::App& app, RunOptions& options) {
       ->check(number_in(0.1, 1e6))
       ->capture_default_str()
       ->group(group);
+  app.add_flag("--real-time{1}", options.real_time,
+               "For watching: motions and scans take the time they simulate, see --base-speed, "
+               "--turn-speed, --scan-duration; --real-time=8 eight times as fast. The run is the "
+               "same")
+      ->check(number_in(0.001, 1e6))
+      ->group(group);
   app.add_option("--cache", options.cache,
                  "Folder that keeps what can be seen of a scene, which takes minutes in a large "
                  "building; default: NEXTVIEW_CACHE, else XDG_CACHE_HOME/nextview, else "

@@ -73,7 +73,8 @@ struct RunOptions {
 
   std::string lcm_url;  ///< empty: LCM_DEFAULT_URL, else a free port of its own
   double patience_s = 60.0;
-  std::string cache;  ///< where results that take long are kept; empty: see cache_folder
+  double real_time = 0.0;  ///< simulated seconds a second, for watching; 0: as fast as it goes
+  std::string cache;       ///< where results that take long are kept; empty: see cache_folder
   double bound_spacing_m = 0.40;  ///< of the positions nextview_bound looks at
   bool no_coverage = false;       ///< surface_coverage is not worked out
   bool verbose = false;

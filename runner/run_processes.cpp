@@ -1,5 +1,6 @@
 #include "runner/run_processes.h"
 
+#include <fmt/format.h>
 #include <signal.h>
 
 #include <system_error>
@@ -21,7 +22,7 @@ std::vector<std::string> answering_roles(const std::vector<std::string>& without
 }
 
 RunProcesses::RunProcesses(std::string lcm_url, std::int64_t run, const std::filesystem::path& log,
-                           const std::vector<std::string>& answering)
+                           const std::vector<std::string>& answering, double real_time)
     : lcm_url_(std::move(lcm_url)), run_(run) {
   const auto recorder = find_in_path("lcm-logger");
   if (!recorder) {
@@ -37,7 +38,13 @@ RunProcesses::RunProcesses(std::string lcm_url, std::int64_t run, const std::fil
   } catch (const std::system_error& error) {
     throw SetupError(error.what());
   }
-  for (const std::string& role : answering) start(role);
+  for (const std::string& role : answering) {
+    std::vector<std::string> more;
+    if (real_time > 0.0 && role.ends_with("_sim")) {
+      more.push_back(fmt::format("--real-time={}", real_time));
+    }
+    start(role, more);
+  }
 }
 
 void RunProcesses::start_planner(const std::filesystem::path& program) {
@@ -53,20 +60,21 @@ void RunProcesses::start_planner(const std::filesystem::path& program) {
   }
 }
 
-void RunProcesses::start(const std::string& role) {
+void RunProcesses::start(const std::string& role, const std::vector<std::string>& more) {
   const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   try {
-    start(role, folder / ("nextview_" + role));
+    start(role, folder / ("nextview_" + role), more);
   } catch (const std::system_error& error) {
     throw SetupError(std::string(error.what()) + ": build nextview again");
   }
 }
 
-void RunProcesses::start(const std::string& role, const std::filesystem::path& program) {
-  children_.emplace_back(role,
-                         std::vector<std::string>{program.string(), "--lcm-url=" + lcm_url_,
-                                                  "--run=" + std::to_string(run_)},
-                         AtParentsDeath::Kill);
+void RunProcesses::start(const std::string& role, const std::filesystem::path& program,
+                         const std::vector<std::string>& more) {
+  std::vector<std::string> arguments = {program.string(), "--lcm-url=" + lcm_url_,
+                                        "--run=" + std::to_string(run_)};
+  arguments.insert(arguments.end(), more.begin(), more.end());
+  children_.emplace_back(role, arguments, AtParentsDeath::Kill);
 }
 
 std::optional<std::string> RunProcesses::casualty() {

@@ -21,9 +21,10 @@ class RunProcesses {
   /// Starts lcm-logger, which must be in PATH, and the processes that answer the planner, which lie
   /// beside this program's own executable.
   /// @param answering their roles
+  /// @param real_time simulated seconds a second of the simulators; 0: as fast as it goes
   /// @throws SetupError saying what cannot be started and what to do
   RunProcesses(std::string lcm_url, std::int64_t run, const std::filesystem::path& log,
-               const std::vector<std::string>& answering);
+               const std::vector<std::string>& answering, double real_time = 0.0);
 
   /// Starts the planner, and with it the run: when the others are ready, so that its first goal
   /// need not be asked for again.
@@ -45,8 +46,9 @@ class RunProcesses {
   std::map<std::string, std::int64_t> peak_memory_bytes() const;
 
  private:
-  void start(const std::string& role);
-  void start(const std::string& role, const std::filesystem::path& program);
+  void start(const std::string& role, const std::vector<std::string>& more = {});
+  void start(const std::string& role, const std::filesystem::path& program,
+             const std::vector<std::string>& more = {});
 
   std::string lcm_url_;
   std::int64_t run_;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <exception>
+#include <numbers>
 #include <random>
 #include <set>
 #include <utility>
@@ -119,7 +120,7 @@ void RunSupervisor::pump_until(const Condition& condition) {
 
 void RunSupervisor::start_up() {
   join_bus();
-  processes_.emplace(lcm_url_, setup_.config.run, files_.log, answering_);
+  processes_.emplace(lcm_url_, setup_.config.run, files_.log, answering_, options_.real_time);
   if (options_.verbose || !options_.without.empty()) {
     progress_.say(fmt::format("bus: {}, run {}", lcm_url_, setup_.config.run));
   }
@@ -355,11 +356,26 @@ void RunSupervisor::pump(milliseconds timeout) {
   if (noted_signal() != 0) {
     throw EndsEarly{StopReason::Interrupted, "The run was interrupted by a signal."};
   }
-  if (seconds_between(heard_.last_progress, Clock::now()) > options_.patience_s) {
+  if (seconds_between(heard_.last_progress, Clock::now()) >
+      options_.patience_s + watched_motion_s()) {
     throw EndsEarly{StopReason::NoAnswer,
                     fmt::format("{} for {} s (--patience)", waited_for(heard_, answering_),
                                 std::lround(options_.patience_s))};
   }
+}
+
+double RunSupervisor::watched_motion_s() const {
+  if (options_.real_time <= 0.0) return 0.0;
+  const RunRecord& record = heard_.record;
+  const goal_t* goal =
+      record.goal(record.latest_view(), record.final_attempt(record.latest_view()));
+  if (goal == nullptr) return 0.0;
+  const base_config_t& base = setup_.config.base;
+  constexpr double kWholeTurn = 2.0 * std::numbers::pi;
+  const double motion_s =
+      std::max(goal->path_length_m / std::min(base.base_speed_m_s, base.lift_speed_m_s),
+               kWholeTurn / base.turn_speed_rad_s);
+  return (motion_s + setup_.config.sensor.scan_duration_s) / options_.real_time;
 }
 
 void RunSupervisor::check_on_processes() {

@@ -60,6 +60,8 @@ class RunSupervisor {
   template <class Condition>
   void pump_until(const Condition& condition);
   void pump(std::chrono::milliseconds timeout);
+  /// With --real-time: what the motion and scan under way may take without a word.
+  double watched_motion_s() const;
   void check_on_processes();
   void make_rows(std::chrono::milliseconds wait_for_scoring = std::chrono::milliseconds(0));
 

@@ -79,6 +79,12 @@ Eigen::Matrix4d world_from_root(const aiScene& scene, const std::string& reader,
     const double factor = options.unit_m ? *options.unit_m / file_unit_m : 1.0;
     return z_up_from(options.up.value_or(UpAxis::Y)) * scaling(factor);
   }
+  if (reader.starts_with("Discreet 3DS")) {
+    // z up by convention, and assimp turns it to y up, always.
+    const Eigen::Matrix4d file_from_root = z_up_from(UpAxis::Y);
+    return z_up_from(options.up.value_or(UpAxis::Z)) * file_from_root *
+           scaling(options.unit_m.value_or(1.0));
+  }
   const UpAxis up_of_format = reader.starts_with("glTF") ? UpAxis::Y : UpAxis::Z;
   return z_up_from(options.up.value_or(up_of_format)) * scaling(options.unit_m.value_or(1.0));
 }
@@ -86,6 +92,13 @@ Eigen::Matrix4d world_from_root(const aiScene& scene, const std::string& reader,
 // Up to here floats, which is what Debian's assimp makes of every coordinate, tell millimetres
 // apart.
 constexpr double kFarthest_m = 8192.0;
+
+// To a hundredth of a millimetre, far below what a sensor measures: so the same room is the same to
+// the last bit whatever format, unit, axis and nodes it has gone through.
+Eigen::Vector3f rounded(const Eigen::Vector3d& vertex_m) {
+  constexpr double kStepsPerMetre = 1e5;
+  return ((kStepsPerMetre * vertex_m).array().round() / kStepsPerMetre).matrix().cast<float>();
+}
 
 void add_mesh(const aiMesh& mesh, const Eigen::Matrix4d& world_from_mesh,
               const std::filesystem::path& file, Shapes& shapes) {
@@ -100,7 +113,7 @@ void add_mesh(const aiMesh& mesh, const Eigen::Matrix4d& world_from_mesh,
       shapes.farthest_m = std::max({shapes.farthest_m, scale * given.cwiseAbs().maxCoeff(),
                                     vertex_m.head<3>().cwiseAbs().maxCoeff()});
     }
-    shapes.vertices_m.push_back(vertex_m.head<3>().cast<float>());
+    shapes.vertices_m.push_back(rounded(vertex_m.head<3>()));
   }
   for (unsigned int i = 0; i < mesh.mNumFaces; ++i) {
     const aiFace& face = mesh.mFaces[i];

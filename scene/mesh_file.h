@@ -23,8 +23,9 @@ LoadLimits load_limits();
 
 /// Loads the triangles of any file assimp reads, every node's transform applied, in a fixed order.
 ///
-/// Points and lines, triangles of no area and exact duplicates (the same three corners in any order
-/// of them) are left out. When a coordinate is beyond 8192 m, where floats no longer tell
+/// Coordinates are rounded to 0.01 mm, so that a room is the same to the last bit in every format
+/// and unit. Points and lines, triangles of no area and exact duplicates (the same three corners in
+/// any order of them) are left out. When a coordinate is beyond 8192 m, where floats no longer tell
 /// millimetres apart, whole kilometres are taken from all of them in double (origin_in_file_m);
 /// that can be had of OBJ, and of PLY with text or doubles. Y up becomes z up by the rotation (x,
 /// y, z) -> (x, -z, y), x up by (x, y, z) -> (-y, -z, x), as COLLADA has it.

@@ -20,12 +20,13 @@ constexpr int kViewsRemembered = 8;
 }  // namespace
 
 SensorSimProcess::SensorSimProcess(Bus& bus, const run_config_t& config,
-                                   const std::function<bool()>& interrupted)
+                                   const std::function<bool()>& interrupted, double real_time)
     : bus_(bus),
       config_(config),
       scene_(load_scene(config, interrupted)),
       rays_(make_ray_table(sensor_of(config))),
-      baseline_m_(baseline_m_of(sensor_of(config))) {
+      baseline_m_(baseline_m_of(sensor_of(config))),
+      real_time_(real_time) {
   bus_.on<arrival_t>([this](const arrival_t& arrival) {
     if (arrival.arrived == 0) return;
     arrivals_.emplace(key_of(arrival), arrival);
@@ -34,10 +35,23 @@ SensorSimProcess::SensorSimProcess(Bus& bus, const run_config_t& config,
 }
 
 bool SensorSimProcess::step() {
+  if (scanned_) {
+    if (!real_time_.is_over()) return false;
+    publish_scanned();
+    return true;
+  }
   if (to_scan_.empty()) return false;
   const arrival_t& arrival = arrivals_.at(to_scan_.front());
   to_scan_.pop_front();
+  scanned_ = scan_at(arrival);
+  const bool again = arrival.view <= latest_view_;
+  latest_view_ = std::max(latest_view_, arrival.view);
+  real_time_.begin(again ? 0.0 : config_.sensor.scan_duration_s);
+  if (real_time_.is_over()) publish_scanned();
+  return true;
+}
 
+SensorSimProcess::Scanned SensorSimProcess::scan_at(const arrival_t& arrival) const {
   const SensorPose pose{Eigen::Vector3d(arrival.true_position_m), arrival.true_pan_rad,
                         arrival.true_tilt_rad};
   const auto start = std::chrono::steady_clock::now();
@@ -53,18 +67,25 @@ bool SensorSimProcess::step() {
   image.world_from_sensor = world_from_sensor_rotation(image.pose.pan_rad, image.pose.tilt_rad);
 
   const std::int64_t utime = arrival.utime + std::llround(config_.sensor.scan_duration_s * 1e6);
-  for (range_image_t& message : range_image_messages(image, arrival.view, arrival.attempt, utime)) {
-    bus_.publish(std::move(message));
-  }
-  bus_.publish(
-      timing_message(bus_.role(), utime, arrival.view, arrival.attempt, {{"scan", wall.count()}}));
-  latest_view_ = std::max(latest_view_, arrival.view);
+  return {
+      range_image_messages(image, arrival.view, arrival.attempt, utime),
+      timing_message(bus_.role(), utime, arrival.view, arrival.attempt, {{"scan", wall.count()}})};
+}
+
+void SensorSimProcess::publish_scanned() {
+  for (range_image_t& part : scanned_->parts) bus_.publish(std::move(part));
+  bus_.publish(scanned_->timing);
+  scanned_.reset();
   bus_.forget_before<range_image_t>(latest_view_ - kViewsRemembered);
-  return true;
+}
+
+std::chrono::milliseconds SensorSimProcess::longest_wait() const {
+  return scanned_ ? real_time_.left() : BusProcess::longest_wait();
 }
 
 void SensorSimProcess::on_missing(const request_t& request) {
   if (request.wanted_channel != Channel<range_image_t>::name) return;
+  if (scanned_ && scanned_->parts.front().view == request.view) return;  // it is on its way
   bool forgotten = false;
   for (const auto& [key, arrival] : arrivals_) {
     if (key.view != request.view || (request.attempt != 0 && key.attempt != request.attempt)) {

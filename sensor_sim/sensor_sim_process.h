@@ -3,8 +3,11 @@
 #include <deque>
 #include <functional>
 #include <map>
+#include <optional>
+#include <vector>
 
 #include "lcmtypes/bus_process.h"
+#include "lcmtypes/real_time.h"
 #include "scene/scene.h"
 #include "sensor/sensor_geometry.h"
 
@@ -15,15 +18,25 @@ class SensorSimProcess : public BusProcess {
  public:
   /// @throws SceneError when the run's scene cannot be loaded
   /// @param interrupted  when to give up loading it, as in LoadLimits
+  /// @param real_time  simulated seconds a second; 0: at once
   SensorSimProcess(Bus& bus, const run_config_t& config,
-                   const std::function<bool()>& interrupted = {});
+                   const std::function<bool()>& interrupted = {}, double real_time = 0.0);
 
-  /// Scans at the next arrival.
+  /// Scans at the next arrival, or publishes what it has scanned.
   bool step() override;
+  std::chrono::milliseconds longest_wait() const override;
   /// Scans again when a range image is asked for that the bus has forgotten: the same image.
   void on_missing(const request_t& request) override;
 
  private:
+  /// A range image in its parts, and how long it took.
+  struct Scanned {
+    std::vector<range_image_t> parts;
+    timing_t timing;
+  };
+  Scanned scan_at(const arrival_t& arrival) const;
+  void publish_scanned();
+
   Bus& bus_;
   run_config_t config_;
   Scene scene_;
@@ -32,6 +45,8 @@ class SensorSimProcess : public BusProcess {
   std::map<MessageKey, arrival_t> arrivals_;  // all of them
   std::deque<MessageKey> to_scan_;            // of arrivals_
   int latest_view_ = 0;                       // scanned
+  RealTime real_time_;
+  std::optional<Scanned> scanned_;  // not published yet: the scan is under way
 };
 
 }  // namespace nextview

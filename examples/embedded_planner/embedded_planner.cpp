@@ -6,6 +6,7 @@
 #include <numbers>
 #include <variant>
 
+#include "lcmtypes/tell_version.h"
 #include "planner/surface_strategy.h"
 #include "planner/view_planner.h"
 #include "sensor/sensor_geometry.h"
@@ -40,7 +41,8 @@ nextview::RangeImage scan(const nextview::SensorPose& pose, const nextview::RayT
 
 }  // namespace
 
-int main() {
+int main(int argc, char** argv) {
+  if (nextview::tell_version(argc, argv)) return 0;
   const nextview::VoxelGrid grid{.voxel_size_m = 0.1};
   const nextview::MapWindow window{{-2, -2, -2}, {65, 55, 33}};  // voxels
   const nextview::RayTable rays = nextview::make_ray_table(nextview::TiltedLineScan::paper());

@@ -187,4 +187,23 @@ timing_t example() {
   return timing;
 }
 
+template <>
+map_blocks_t example() {
+  map_blocks_t blocks{};
+  blocks.run = 7;
+  blocks.view = 2;
+  blocks.since_view = 1;
+  blocks.parts = 1;
+  blocks.voxel_size_m = 0.1;
+  for (std::int32_t& size : blocks.window_size) size = 16;
+  blocks.blocks = 2;
+  blocks.block_index = {{0, 0, 0}, {-1, 0, 1}};
+  blocks.block_label.assign(2, std::vector<std::uint8_t>(512, 3));
+  blocks.block_label[1][511] = 4;
+  blocks.surfaces = 1;
+  blocks.surface_normal = {{0.0F, 0.6F, 0.8F}};
+  blocks.surface_quality = {0.75F};
+  return blocks;
+}
+
 }  // namespace nextview

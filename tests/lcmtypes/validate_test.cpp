@@ -232,6 +232,44 @@ TEST(Validate, Timing) {
   });
 }
 
+TEST(Validate, MapBlocks) {
+  expect_all_refused<map_blocks_t>({
+      {"negative utime", [](map_blocks_t& m) { m.utime = -1; }},
+      {"since a negative view", [](map_blocks_t& m) { m.since_view = -1; }},
+      {"since a later view", [](map_blocks_t& m) { m.since_view = 3; }},
+      {"negative part", [](map_blocks_t& m) { m.part = -1; }},
+      {"a part too many", [](map_blocks_t& m) { m.part = 1; }},
+      {"no parts", [](map_blocks_t& m) { m.parts = 0; }},
+      {"one empty part of two",
+       [](map_blocks_t& m) {
+         m = example<map_blocks_t>();
+         m.parts = 2;
+         m.blocks = m.surfaces = 0;
+         m.block_index.clear();
+         m.block_label.clear();
+         m.surface_normal.clear();
+         m.surface_quality.clear();
+       }},
+      {"no voxel size", [](map_blocks_t& m) { m.voxel_size_m = 0.0; }},
+      {"NaN origin", [](map_blocks_t& m) { m.map_origin_m[1] = kNan; }},
+      {"an empty window", [](map_blocks_t& m) { m.window_size[2] = 0; }},
+      {"no label", [](map_blocks_t& m) { m.block_label[0][3] = 5; }},
+      {"fewer surfaces than Occupied voxels", [](map_blocks_t& m) { m.block_label[0][3] = 4; }},
+      {"more surfaces than Occupied voxels", [](map_blocks_t& m) { m.block_label[1][511] = 3; }},
+      {"a long normal", [](map_blocks_t& m) { m.surface_normal[0][0] = 0.1F; }},
+      {"NaN normal", [](map_blocks_t& m) { m.surface_normal[0][0] = kNanF; }},
+      {"quality above 1", [](map_blocks_t& m) { m.surface_quality[0] = 1.01F; }},
+      {"NaN quality", [](map_blocks_t& m) { m.surface_quality[0] = kNanF; }},
+  });
+  auto nothing_changed = example<map_blocks_t>();
+  nothing_changed.blocks = nothing_changed.surfaces = 0;
+  nothing_changed.block_index.clear();
+  nothing_changed.block_label.clear();
+  nothing_changed.surface_normal.clear();
+  nothing_changed.surface_quality.clear();
+  EXPECT_EQ(check(nothing_changed), "");
+}
+
 TEST(Validate, NamesOfAList) {
   EXPECT_EQ(names_of(""), std::vector<std::string_view>{});
   EXPECT_EQ(names_of("a"), std::vector<std::string_view>{"a"});

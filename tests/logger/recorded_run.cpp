@@ -78,6 +78,7 @@ Recording record_run() {
   run_bus.publish(config);
   run_bus.request<status_t>(0, 0);
   for (Bus* bus : {&base_bus, &sensor_bus, &mapper_bus}) say_ready(*bus);
+  mapper_bus.publish(example<map_blocks_t>());
   const auto turn = [&] {
     bool worked = planner.step();
     worked |= sensor.step();

@@ -38,15 +38,27 @@ if "$prefix/bin/nextview" run nowhere 2> "$folder/err"; then fail "nextview run 
 grep -q "scenes in $prefix/share/nextview/scenes" "$folder/err" ||
   fail "the scenes are not the installed ones"
 
-# A project of one's own.
-"$cmake" -S "$sources/examples/embedded_planner" -B "$folder/outside" -DCMAKE_PREFIX_PATH="$prefix" \
-  -DCMAKE_CXX_COMPILER="$compiler" -DCMAKE_BUILD_TYPE=Release > "$folder/outside.log" 2>&1 &&
-  "$cmake" --build "$folder/outside" >> "$folder/outside.log" 2>&1 || fail "$(cat "$folder/outside.log")"
-"$folder/outside/embedded_planner" | tee "$folder/outside.out"
+# Projects of one's own: every one of the examples, outside of the sources.
+examples=0
+for example in "$sources"/examples/*/CMakeLists.txt; do
+  name=$(basename "$(dirname "$example")")
+  cp -r "$(dirname "$example")" "$folder/$name"
+  "$cmake" -S "$folder/$name" -B "$folder/$name/build" -DCMAKE_PREFIX_PATH="$prefix" -DCMAKE_CXX_COMPILER="$compiler" \
+    -DCMAKE_BUILD_TYPE=Release > "$folder/outside.log" 2>&1 &&
+    "$cmake" --build "$folder/$name/build" >> "$folder/outside.log" 2>&1 || fail "$(cat "$folder/outside.log")"
+  [ "$("$folder/$name/build/$name" --version)" = "$name $version" ] || fail "$name --version"
+  examples=$((examples + 1))
+done
+[ "$examples" -ge 3 ] || fail "only $examples examples"
+"$folder/embedded_planner/build/embedded_planner" | tee "$folder/outside.out"
 grep -q '^nothing_left after' "$folder/outside.out" || fail "the outside planner did not come to its end"
 # The floor, the ceiling and the walls: 6 x 5 and 22 x 2.8 m2; a voxel map counts the outer faces of none.
 awk '/m2 of surface/ { found = 1; if ($1 < 115 || $1 > 130) exit 1 } END { exit !found }' "$folder/outside.out" ||
   fail "not the area of the room"
+
+(cd "$folder" && "$prefix/bin/nextview" run boxes --views 3 --no-coverage --out frontiers \
+  --planner frontier_planner/build/frontier_planner > run.out) || fail "$(cat "$folder/run.out")"
+"$prefix/bin/nextview" replay "$folder/frontiers" | grep -q '^3 views replayed' || fail "the planner of the example"
 
 # Completion in bash.
 completed=$(bash -c "source '$prefix/share/bash-completion/completions/nextview'

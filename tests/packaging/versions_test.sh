@@ -1,0 +1,54 @@
+#!/bin/bash
+# versions_test.sh BUILD SOURCES: every program there is, built, Python or shell, tells the same version, and those
+# that were built the same commit.
+set -euo pipefail
+build=$1 sources=$2
+folder=$(mktemp -d)
+trap 'rm -rf "$folder"' EXIT
+
+fail() {
+  echo "FAILED: $*" >&2
+  exit 1
+}
+
+version=$("$build/bin/nextview" --version)
+version=${version#nextview }
+[[ $version =~ ^[0-9]+\.[0-9]+(\ [0-9a-f]{12}\+?)?$ ]] || fail "nextview --version: $version"
+
+# What is part of the tests only.
+is_of_tests() {
+  case "$1" in
+    *_test | vector_clones_* | noise_* | driver | forgetful_recorder) true ;;
+    *) false ;;
+  esac
+}
+
+built=0
+for program in "$build"/bin/*; do
+  name=${program##*/}
+  [ -f "$program" ] && [ -x "$program" ] || continue
+  ! is_of_tests "$name" || continue
+  said=$("$program" --version 2>&1) || fail "$name --version: status $?: $said"
+  [ "$said" = "$name $version" ] || fail "$name --version: $said, where nextview says $version"
+  built=$((built + 1))
+done
+[ "$built" -ge 14 ] || fail "only $built programs in $build/bin"
+
+# Of the sources, whose commit may be another by now.
+lcm-gen -p --ppath "$folder/types" "$sources"/lcmtypes/*.lcm > /dev/null
+scripts=0
+says_version() {
+  local said
+  said=$(PYTHONPATH="$folder/types" "$@" --version 2>&1) || fail "$* --version: $said"
+  [[ $said =~ ^[a-z_./]+\ ${version%% *}(\ [0-9a-f]{12}\+?)?$ ]] || fail "$* --version: $said"
+  scripts=$((scripts + 1))
+}
+for script in "$sources"/{examples,runner,reports,exporter,bench,viewer}/{,*/}*.py; do
+  [ -f "$script" ] && grep -q '__main__' "$script" || continue
+  says_version python3 -B "$script"
+done
+for script in "$sources"/{logplayer,package,spy,test,bench/run,bench/refusals}; do
+  says_version "$script"
+done
+[ "$scripts" -ge 11 ] || fail "only $scripts scripts"
+echo "$built programs and $scripts scripts tell $version"
