@@ -27,7 +27,7 @@ using Predictor = std::shared_ptr<ViewPredictor>;
 
 double evaluate(const KnownSpace& space, ViewPredictor& predictor,
                 const std::vector<VoxelIndex>& positions, std::vector<ViewCounts>& counts) {
-  const FactorWeights weights = {predictor.counts_quality() ? 1.0 : 0.0};
+  const FactorWeights weights = {predictor.counts_surfaces() ? 1.0 : 0.0};
   double best = 0.0;
   for (const VoxelIndex& position : positions) {
     predictor.predict(space, position, counts);
@@ -210,7 +210,7 @@ void register_panorama(const RecoveredRoom& room) {
   for (const int subdivisions : {0, 2, 3}) {
     const auto orientations = icosahedron_orientations(subdivisions);
     const auto panorama = std::make_shared<PanoramaViewPredictor>(
-        RecoveredRoom::raster(), room.voxel_size_m(), orientations);
+        RecoveredRoom::raster(), room.voxel_size_m(), orientations, false);
     PlainViewPredictor plain(RecoveredRoom::raster(), room.voxel_size_m(), orientations, false);
     report_panorama_error(room, *panorama, plain);
     register_predictor("nextview_panorama_" + std::to_string(orientations.size()), room, panorama);

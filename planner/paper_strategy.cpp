@@ -127,7 +127,7 @@ std::optional<Decision> decide_by_simplex(const Situation& situation, ShortestPa
                                           ViewPredictor& predictor,
                                           const PlannerParameters& parameters) {
   parameters.check();
-  if (parameters.use_quality && !predictor.counts_quality()) {
+  if (parameters.use_quality && !predictor.counts_surfaces()) {
     throw std::invalid_argument("the view predictor does not count quality, but use_quality is on");
   }
   const SensorPose& present = situation.present;
@@ -174,7 +174,7 @@ PaperStrategy::PaperStrategy(const PlannerParameters& search, const StopParamete
 }
 
 KnownSpace::Surfaces PaperStrategy::surfaces() const {
-  return predictor_->counts_quality() ? KnownSpace::Surfaces::Keep : KnownSpace::Surfaces::Leave;
+  return predictor_->counts_surfaces() ? KnownSpace::Surfaces::Keep : KnownSpace::Surfaces::Leave;
 }
 
 void PaperStrategy::view_folded(const FoldedView& folded) {

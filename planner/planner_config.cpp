@@ -58,14 +58,15 @@ PredictionRaster raster_of(const run_config_t& config) {
   return prediction_raster(sensor_of(config), range_limits_of(config), rays);
 }
 
-/// Every ray of every orientation, or with more than 20 orientations and quality off one panorama
-/// that answers them all.
+/// Every ray of every orientation, or with more than 20 orientations one panorama that answers them
+/// all.
 std::unique_ptr<ViewPredictor> make_predictor(const run_config_t& config) {
   const PredictionRaster raster = raster_of(config);
   const bool use_quality = config.planner.quality_weight > 0.0;
-  if (config.planner.directions > 20 && !use_quality) {
+  if (config.planner.directions > 20) {
     return std::make_unique<PanoramaViewPredictor>(raster, config.map.voxel_size_m,
-                                                   orientations_of(config), config.planner.threads);
+                                                   orientations_of(config), use_quality,
+                                                   config.planner.threads);
   }
   return std::make_unique<FastViewPredictor>(raster, config.map.voxel_size_m,
                                              orientations_of(config), use_quality,
