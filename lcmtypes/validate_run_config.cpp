@@ -93,9 +93,8 @@ void check_planner(Checks& checks, const planner_config_t& planner) {
     checks.within(bounds::kPredictionRays, planner.prediction_columns);
     checks.within(bounds::kPredictionRays, planner.prediction_rows);
   }
-  // Nothing reads these yet: what is asked for must not be ignored.
-  checks.neutral("structure_weight", planner.structure_weight);
-  checks.neutral("navigation_weight", planner.navigation_weight);
+  checks.within(bounds::kFactorWeight, planner.structure_weight);
+  checks.within(bounds::kFactorWeight, planner.navigation_weight);
   checks.within(bounds::kPathCost, planner.path_cost_per_m);
   checks.within(bounds::kDeparture, planner.later_departure_m);
   checks.within(bounds::kLeastOverlap, planner.least_overlap);
@@ -129,6 +128,10 @@ std::string check(const run_config_t& config) {
   check_planner(checks, config.planner);
   checks.require(config.strategy == "paper" || config.strategy == "surface",
                  "strategy '" + config.strategy + "' is neither paper nor surface");
+  // The objective of surface has no such factors: what is asked for must not be ignored.
+  checks.require(config.strategy != "surface" || (config.planner.structure_weight == 0.0 &&
+                                                  config.planner.navigation_weight == 0.0),
+                 "a structure_weight or navigation_weight with the strategy surface");
   // No view shows less than nothing: such a run would never end by itself.
   checks.require(config.strategy != "surface" || config.planner.least_gain_m2 > 0.0,
                  "least_gain_m2 is not above 0");

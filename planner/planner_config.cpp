@@ -24,11 +24,20 @@ FeasibilityParameters feasibility_of(const run_config_t& config) {
           .lift_max_m = config.base.lift_max_m};
 }
 
+FactorWeights factor_weights_of(const run_config_t& config) {
+  if (config.strategy != PaperStrategy::kName) return {};
+  FactorWeights weights = {};
+  weights[kQualityFactor] = config.planner.quality_weight;
+  weights[kStructureFactor] = config.planner.structure_weight;
+  weights[kNavigationFactor] = config.planner.navigation_weight;
+  return weights;
+}
+
 namespace {
 
 PlannerParameters planner_parameters_of(const run_config_t& config) {
   PlannerParameters parameters;
-  parameters.use_quality = config.planner.quality_weight > 0.0;
+  parameters.weights = factor_weights_of(config);
   parameters.step_min_m = config.planner.step_min_m;
   parameters.step_max_m = config.planner.step_max_m;
   parameters.fitness_tolerance = config.planner.fitness_tolerance;
@@ -62,14 +71,14 @@ PredictionRaster raster_of(const run_config_t& config) {
 /// all.
 std::unique_ptr<ViewPredictor> make_predictor(const run_config_t& config) {
   const PredictionRaster raster = raster_of(config);
-  const bool use_quality = config.planner.quality_weight > 0.0;
+  const bool counts_surfaces = ask_for_surfaces(factor_weights_of(config));
   if (config.planner.directions > 20) {
     return std::make_unique<PanoramaViewPredictor>(raster, config.map.voxel_size_m,
-                                                   orientations_of(config), use_quality,
+                                                   orientations_of(config), counts_surfaces,
                                                    config.planner.threads);
   }
   return std::make_unique<FastViewPredictor>(raster, config.map.voxel_size_m,
-                                             orientations_of(config), use_quality,
+                                             orientations_of(config), counts_surfaces,
                                              config.planner.threads);
 }
 

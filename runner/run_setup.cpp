@@ -174,10 +174,17 @@ void fill_planner(run_config_t& config, const RunOptions& options) {
     throw SetupError("--step-min must not be above --step-max");
   }
   const bool paper = options.strategy == PaperStrategy::kName;
+  if (!paper && (options.structure_weight != 0.0 || options.navigation_weight != 0.0)) {
+    throw SetupError(
+        "--structure-weight and --navigation-weight weigh the paper's fitness, which --strategy " +
+        options.strategy + " does not have: give --strategy paper, or for the way --path-cost");
+  }
   const int views = !paper ? 1000 : options.quality ? 300 : 60;
   config.planner.max_views = options.views.value_or(views);
   config.planner.max_attempts = options.max_attempts;
   config.planner.quality_weight = options.quality ? 1.0 : 0.0;
+  config.planner.structure_weight = options.structure_weight;
+  config.planner.navigation_weight = options.navigation_weight;
   config.planner.stop_rule = options.quality ? 2 : 1;
   config.planner.quality_threshold = options.quality_threshold;
   config.planner.clearance_m = options.clearance_m;

@@ -70,7 +70,7 @@ TEST(PanoramaViewPredictor, FitnessIsThePlainOneWithinTheSamplingError) {
     for (std::size_t i = 0; i < counts.size(); ++i) {
       EXPECT_EQ(counts[i].occupied + counts[i].occlusion_plane + counts[i].unseen + counts[i].open,
                 64 * 30);
-      const double error = std::abs(fitness(counts[i], {}).value - fitness(expected[i], {}).value);
+      const double error = std::abs(fitness(counts[i]).value - fitness(expected[i]).value);
       sum += error;
       largest = std::max(largest, error);
       ++views;

@@ -58,7 +58,7 @@ TEST_F(SmallWorld, CountsWhatEachRayMeetsFirst) {
   map.set_label({3, 1, 2}, Label::Unmarked);
   const ViewCounts counts = predict(30.0, looking({0.0}))[0];
   EXPECT_EQ(counts, (ViewCounts{1, 1, 1, 0, 0, 0, 0}));
-  const Fitness f = fitness(counts, {});
+  const Fitness f = fitness(counts);
   EXPECT_NEAR(f.share_occupied, 1.0 / 3.0, 1e-12);
   EXPECT_NEAR(f.value, 5.0 / 27.0 - 10.5 / 9.0 + 2.0, 1e-12);
 }
