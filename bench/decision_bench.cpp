@@ -37,7 +37,7 @@ struct Moment {
 class SameWay : public ViewPredictor {
  public:
   SameWay(std::shared_ptr<ViewPredictor> kernel, std::shared_ptr<ViewPredictor> leader)
-      : ViewPredictor(leader->orientations(), leader->counts_quality()),
+      : ViewPredictor(leader->orientations(), leader->counts_surfaces()),
         kernel_(std::move(kernel)),
         leader_(std::move(leader)) {}
 
@@ -84,7 +84,7 @@ std::optional<Decision> decide_after(const KnownSpace& space, const ClearSpace& 
                                      const SensorPose& present, int views,
                                      ViewPredictor& predictor) {
   PlannerParameters parameters;
-  parameters.use_quality = predictor.counts_quality();
+  parameters.weights[kQualityFactor] = predictor.counts_surfaces() ? 1.0 : 0.0;
   static ShortestPaths paths;  // as a run's, keeps its memory from one decision to the next
   paths.stand_at(clear, space.map(), present.position_m, parameters.feasibility.departure_m);
   return decide_by_simplex({space, present, 1, views + 1, 1, {}}, paths, predictor, parameters);
@@ -155,7 +155,7 @@ void register_run(const std::string& name, const std::string& scene, double voxe
         for (auto _ : state) {
           ExplorationParameters parameters;
           parameters.voxel_size_m = voxel_size_m;
-          parameters.planner.use_quality = quality;
+          parameters.planner.weights[kQualityFactor] = quality ? 1.0 : 0.0;
           ViewPlanner planner(
               {voxel_size_m}, run->window, paper_strategy(parameters, threads),
               {.max_views = static_cast<int>(run->images.size()) + 1, .threads = threads});
@@ -270,7 +270,7 @@ void register_moment(const std::shared_ptr<Moment>& moment, Agreement& with_plai
   register_decider("textbook_its_own_way", moment, textbook);
   register_decider("nextview_panorama_1280", moment,
                    std::make_shared<PanoramaViewPredictor>(paper_raster(), voxel_size_m,
-                                                           icosahedron_orientations(3)));
+                                                           icosahedron_orientations(3), false));
 }
 
 }  // namespace

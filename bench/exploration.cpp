@@ -18,15 +18,15 @@ TiltedLineScan sensor_for(double voxel_size_m) {
 }
 
 std::unique_ptr<Strategy> paper_strategy(const ExplorationParameters& parameters, int threads) {
-  const auto predictor = [&](int columns, int rows, bool quality) {
+  const auto predictor = [&](int columns, int rows, bool counts_surfaces) {
     const auto sensor = TiltedLineScan::with_aperture(columns, rows, std::numbers::pi / 3.0);
     return std::make_unique<FastViewPredictor>(prediction_raster(sensor, RangeLimits()),
                                                parameters.voxel_size_m, icosahedron_orientations(),
-                                               quality, threads);
+                                               counts_surfaces, threads);
   };
   return std::make_unique<PaperStrategy>(
       parameters.planner, StopParameters(), parameters.voxel_size_m,
-      predictor(64, 30, parameters.planner.use_quality), predictor(16, 7, false));
+      predictor(64, 30, ask_for_surfaces(parameters.planner.weights)), predictor(16, 7, false));
 }
 
 Exploration::Exploration(const BenchScene& scene, const ExplorationParameters& parameters)

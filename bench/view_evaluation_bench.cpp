@@ -27,12 +27,13 @@ using Predictor = std::shared_ptr<ViewPredictor>;
 
 double evaluate(const KnownSpace& space, ViewPredictor& predictor,
                 const std::vector<VoxelIndex>& positions, std::vector<ViewCounts>& counts) {
-  const FactorWeights weights = {predictor.counts_quality() ? 1.0 : 0.0};
+  FactorWeights weights = {};
+  weights[kQualityFactor] = predictor.counts_surfaces() ? 1.0 : 0.0;
   double best = 0.0;
   for (const VoxelIndex& position : positions) {
     predictor.predict(space, position, counts);
     for (const ViewCounts& view : counts) {
-      best = std::max(best, fitness(view, weights).value);
+      best = std::max(best, fitness(view, {}, weights).value);
     }
   }
   return best;
@@ -166,14 +167,14 @@ void report_panorama_error(const RecoveredRoom& room, ViewPredictor& panorama,
     double best = 0.0;
     std::size_t chosen = 0;
     for (std::size_t j = 0; j < exact.size(); ++j) {
-      const double error = std::abs(fitness(sampled[j], {}).value - fitness(exact[j], {}).value);
+      const double error = std::abs(fitness(sampled[j]).value - fitness(exact[j]).value);
       sum += error;
       largest = std::max(largest, error);
-      best = std::max(best, fitness(exact[j], {}).value);
-      if (fitness(sampled[j], {}).value > fitness(sampled[chosen], {}).value) chosen = j;
+      best = std::max(best, fitness(exact[j]).value);
+      if (fitness(sampled[j]).value > fitness(sampled[chosen]).value) chosen = j;
       ++compared;
     }
-    best_loss = std::max(best_loss, best - fitness(exact[chosen], {}).value);
+    best_loss = std::max(best_loss, best - fitness(exact[chosen]).value);
   }
   report_condition("fitness error view_evaluation/" + size_name(room.voxel_size_m()) +
                        " panorama, " + std::to_string(exact.size()) + " directions",
@@ -210,7 +211,7 @@ void register_panorama(const RecoveredRoom& room) {
   for (const int subdivisions : {0, 2, 3}) {
     const auto orientations = icosahedron_orientations(subdivisions);
     const auto panorama = std::make_shared<PanoramaViewPredictor>(
-        RecoveredRoom::raster(), room.voxel_size_m(), orientations);
+        RecoveredRoom::raster(), room.voxel_size_m(), orientations, false);
     PlainViewPredictor plain(RecoveredRoom::raster(), room.voxel_size_m(), orientations, false);
     report_panorama_error(room, *panorama, plain);
     register_predictor("nextview_panorama_" + std::to_string(orientations.size()), room, panorama);

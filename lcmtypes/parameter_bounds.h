@@ -67,6 +67,7 @@ inline constexpr Bounds kPredictionRays{"prediction_columns or prediction_rows",
 inline constexpr Bounds kMaxEvaluations{"max_evaluations", 4, 1200};
 inline constexpr Bounds kClearance{"clearance_m", 0.0, 5.0};
 inline constexpr Bounds kDeparture{"departure_m", 0.0, 5.0};
+inline constexpr Bounds kFactorWeight{"structure_weight or navigation_weight", 0.0, 10.0};
 inline constexpr Bounds kQualityThreshold{"quality_threshold", 0.0, 1.0};
 inline constexpr Bounds kStopWindow{"stop_window_views", 1, 1e6};
 inline constexpr Bounds kPathCost{"path_cost_per_m", 0.0, 10.0};

@@ -37,10 +37,6 @@ class Checks {
   void positive(std::string_view name, double value) {
     if (!(value > 0.0 && std::isfinite(value))) fail(name, value, "not positive");
   }
-  /// Of a field nothing reads yet.
-  void neutral(std::string_view name, double value) {
-    if (!(value == 0.0)) fail(name, value, "nothing reads it yet, so it must be 0");
-  }
   void digest(std::string_view name, std::string_view text) {
     const bool right =
         text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;

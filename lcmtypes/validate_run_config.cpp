@@ -94,9 +94,8 @@ void check_planner(Checks& checks, const planner_config_t& planner) {
     checks.within(bounds::kPredictionRays, planner.prediction_columns);
     checks.within(bounds::kPredictionRays, planner.prediction_rows);
   }
-  // Nothing reads these yet: what is asked for must not be ignored.
-  checks.neutral("structure_weight", planner.structure_weight);
-  checks.neutral("navigation_weight", planner.navigation_weight);
+  checks.within(bounds::kFactorWeight, planner.structure_weight);
+  checks.within(bounds::kFactorWeight, planner.navigation_weight);
   checks.within(bounds::kPathCost, planner.path_cost_per_m);
   checks.within(bounds::kDeparture, planner.later_departure_m);
   checks.within(bounds::kLeastOverlap, planner.least_overlap);
@@ -133,6 +132,11 @@ std::string check(const run_config_t& config) {
   checks.require(
       strategy == nullptr || !strategy->ends_by_least_gain || config.planner.least_gain_m2 > 0.0,
       "least_gain_m2 is not above 0");
+  // The objective of such a strategy has no such factors: what is asked for must not be ignored.
+  checks.require(
+      strategy == nullptr || strategy->weighs_factors ||
+          (config.planner.structure_weight == 0.0 && config.planner.navigation_weight == 0.0),
+      "a structure_weight or navigation_weight with the strategy " + config.strategy);
   return checks.reason();
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "lcmtypes/validate.h"
 #include "planner/goal_message.h"
 #include "sensor/range_image_check.h"
 #include "sensor/sensor_config.h"
@@ -28,6 +29,25 @@ double path_length_m(const goal_t& goal) {
                     .norm();
   }
   return length_m;
+}
+
+/// A version that knew fewer factors than this one names fewer. Those that say nothing, and that
+/// the log does not name, need not be there.
+void leave_out_unknown_factors(const goal_t& logged, goal_t& expected) {
+  const std::vector<std::string_view> known = names_of(logged.factor_names);
+  std::string names;
+  std::vector<double> values;
+  const std::vector<std::string_view> all = names_of(expected.factor_names);
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const double value = expected.factor_value[i];
+    if (value == 0.0 && std::ranges::find(known, all[i]) == known.end()) continue;
+    if (!names.empty()) names += ',';
+    names += all[i];
+    values.push_back(value);
+  }
+  expected.factors = static_cast<std::int32_t>(values.size());
+  expected.factor_value = std::move(values);
+  expected.factor_names = std::move(names);
 }
 
 void put_position(double (&field_m)[3], const Eigen::Vector3d& position_m) {
@@ -74,7 +94,9 @@ goal_t expected_start_goal(const goal_t& logged, const run_config_t& config) {
 }
 
 goal_t expected_goal(const goal_t& logged, const Decision& decision, std::int64_t utime) {
-  return with_key_of(logged, goal_message(decision), utime);
+  goal_t goal = with_key_of(logged, goal_message(decision), utime);
+  leave_out_unknown_factors(logged, goal);
+  return goal;
 }
 
 goal_t expected_goal(const goal_t& logged, const run_config_t& config,

@@ -28,7 +28,7 @@ Simulated simulated_in(const RunRecord& run);
 
 /// The goal of view 1: the scan at the start.
 goal_t expected_start_goal(const goal_t& logged, const run_config_t& config);
-/// A goal that was decided again.
+/// A goal that was decided again; factors of value 0 only as far as the log names them.
 goal_t expected_goal(const goal_t& logged, const Decision& decision, std::int64_t utime);
 /// A goal that was not: only how its path starts, leads and ends.
 /// @param present position of the view before; nullptr when it is not known

@@ -89,8 +89,10 @@ std::vector<UncheckedFields> unchecked_fields(const RunRecord& run, bool planner
                          kSearch,
                          {"tried", "tried_position_m", "tried_pan_rad", "tried_tilt_rad",
                           "tried_fitness", "tried_move"}});
-    unchecked.push_back(
-        {kDecided, kConfig, {"seed", "planner.directions", "planner.quality_weight"}});
+    unchecked.push_back({kDecided,
+                         kConfig,
+                         {"seed", "planner.directions", "planner.quality_weight",
+                          "planner.structure_weight", "planner.navigation_weight"}});
   }
   return unchecked;
 }

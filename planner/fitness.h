@@ -1,28 +1,10 @@
 #pragma once
 
-#include <array>
-#include <cstddef>
-#include <string_view>
-
+#include "planner/factors.h"
 #include "planner/prediction/view_counts.h"
+#include "planner/travel.h"
 
 namespace nextview {
-
-/// P17: (share of the Occupied voxels met that would improve) x (their mean improvement, 0..1).
-/// 0 when no Occupied voxel is met.
-double quality_factor(const ViewCounts& counts);
-
-/// A secondary criterion of eq. 4, in [0, 1].
-struct Factor {
-  std::string_view name;  ///< in messages and tables
-  double (*of)(const ViewCounts&);
-};
-/// All there are. One more is a function with its test, and a line here.
-inline constexpr std::array<Factor, 1> kFactors = {{{"quality", quality_factor}}};
-/// What each counts in eq. 4: 1 as in the paper, 0 not at all and not worked out.
-using FactorWeights = std::array<double, kFactors.size()>;
-/// The place of a factor in the list.
-constexpr std::size_t kQualityFactor = 0;
 
 /// How good a view is predicted to be, and why.
 struct Fitness {
@@ -31,15 +13,22 @@ struct Fitness {
   double share_occlusion_plane = 0.0;  ///< a_op
   double share_unseen = 0.0;           ///< a_us; a_ov + a_op + a_us = 1 unless all rays are open
   double share_open = 0.0;             ///< of all rays
-  FactorWeights factors = {};          ///< f_i by kFactors, in [0, 1]; 0 when not worked out
+  FactorValues factors = {};           ///< f_i by kFactors, in [0, 1]; 0 when not worked out
 };
 
 /// Eq. 3 (P16): f_area = (5 a_ov^3 - 10.5 a_ov^2 + 6 a_ov) (1 - |a_op - a_us| / 2).
 /// Its maximum is 1.04, at a_ov = 0.4 and a_op = a_us. A view of nothing new scores 0.5.
 double area_fitness(double a_ov, double a_op, double a_us);
 
-/// Eq. 4: f = f_area x product over the factors of (1 + weight_i f_i).
+/// Eq. 4: f = f_area x product over the factors of (1 + weight_i f_i). With weights of 1 it is the
+/// paper's; a weight is how much the factor may add at most, in parts of what is there without it,
+/// and with 0 the product is the same number as without the factor.
 /// 0 when no ray meets anything but Empty: there is nothing to see.
-Fitness fitness(const ViewCounts& counts, const FactorWeights& weights);
+/// @param travel of the path to the view; needed when the weights ask for it, and so are the
+///        surface counts
+Fitness fitness(const ViewCounts& counts, const Travel& travel, const FactorWeights& weights);
+
+/// Eq. 3 alone: of a view whose factors do not count.
+inline Fitness fitness(const ViewCounts& counts) { return fitness(counts, {}, {}); }
 
 }  // namespace nextview

@@ -1,5 +1,9 @@
 #include "planner/goal_message.h"
 
+#include <algorithm>
+
+#include "lcmtypes/validate.h"
+
 namespace nextview {
 namespace {
 
@@ -12,9 +16,7 @@ goal_t goal_at(const SensorPose& pose, std::span<const Eigen::Vector3d> waypoint
   for (const Eigen::Vector3d& waypoint_m : waypoints_m) {
     goal.waypoint_m.push_back({waypoint_m.x(), waypoint_m.y(), waypoint_m.z()});
   }
-  for (std::size_t i = 1; i < waypoints_m.size(); ++i) {
-    goal.path_length_m += (waypoints_m[i] - waypoints_m[i - 1]).norm();
-  }
+  goal.path_length_m = travel_along(waypoints_m).length_m;
   return goal;
 }
 
@@ -27,9 +29,12 @@ goal_t goal_message(const Decision& decision) {
   goal.share_occlusion_plane = decision.fitness.share_occlusion_plane;
   goal.share_unseen = decision.fitness.share_unseen;
   goal.share_open = decision.fitness.share_open;
-  goal.factors = 1;
-  goal.factor_value = {decision.fitness.factors[kQualityFactor]};
-  goal.factor_names = "quality";
+  for (std::size_t i = 0; i < kFactors.size(); ++i) {
+    goal.factor_value.push_back(decision.fitness.factors[i]);
+    if (i > 0) goal.factor_names += ',';
+    goal.factor_names += kFactors[i].name;
+  }
+  goal.factors = static_cast<std::int32_t>(goal.factor_value.size());
   goal.strategy = decision.strategy;
   goal.reason = decision.reason;
   goal.expected_gain_m2 = decision.expected_gain_m2;
@@ -37,6 +42,13 @@ goal_t goal_message(const Decision& decision) {
   goal.iterations = decision.iterations;
   goal.evaluations = decision.evaluations;
   return goal;
+}
+
+double factor_of(const goal_t& goal, std::string_view name) {
+  const std::vector<std::string_view> names = names_of(goal.factor_names);
+  const auto found = std::ranges::find(names, name);
+  if (found == names.end()) return 0.0;
+  return goal.factor_value[static_cast<std::size_t>(found - names.begin())];
 }
 
 search_t search_message(const Decision& decision) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 
 #include "lcmtypes/channels.h"
 #include "planner/decision.h"
@@ -11,6 +12,9 @@ namespace nextview {
 /// utime are left for the sender to fill in.
 goal_t goal_message(const Decision& decision);
 search_t search_message(const Decision& decision);
+
+/// The value of one of a goal's factors; 0 of one it does not name.
+double factor_of(const goal_t& goal, std::string_view name);
 
 /// The goal of view 1: the start pose, where the sensor is already.
 goal_t start_goal_message(const SensorPose& start, const std::string& strategy);

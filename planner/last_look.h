@@ -23,7 +23,7 @@ namespace nextview {
 /// where it finds a fitness above kWorthAsking, which leaves its error three standard deviations.
 class LastLook {
  public:
-  /// What a good view's fitness is above. A view of nothing new has 0.5 (P16).
+  /// What a good view's fitness is above, of the areas alone. A view of nothing new has 0.5 (P16).
   static constexpr double kGoodFitness = 0.6;
   static constexpr double kWorthAsking = 0.52;
 
@@ -35,7 +35,7 @@ class LastLook {
   /// The best of the good views, those first that it was asked to go to the least often; nothing
   /// when no view that can be reached is good.
   /// @param paths all found; the voxels of refused goals are left out
-  /// @param coarse with the orientations of the evaluator's
+  /// @param coarse with the orientations of the evaluator's; of both the factors do not count
   std::optional<View> best_view(const Situation& situation, const ShortestPaths& paths,
                                 ViewEvaluator& coarse, ViewEvaluator& evaluator);
 

@@ -113,21 +113,22 @@ Decision decision_of(const SimplexResult& search, const ViewEvaluator& evaluator
   return decision;
 }
 
-/// Every ray of every orientation, or with more than 20 orientations and quality off one panorama
-/// that answers them all.
+/// Every ray of every orientation, or with more than 20 orientations one panorama that answers them
+/// all.
 std::unique_ptr<ViewPredictor> predictor_for(const StrategyInputs& inputs) {
-  if (inputs.orientations.size() > 20 && !inputs.search.use_quality) {
-    return std::make_unique<PanoramaViewPredictor>(inputs.raster, inputs.voxel_size_m,
-                                                   inputs.orientations, inputs.threads);
+  const bool counts_surfaces = ask_for_surfaces(inputs.search.weights);
+  if (inputs.orientations.size() > 20) {
+    return std::make_unique<PanoramaViewPredictor>(
+        inputs.raster, inputs.voxel_size_m, inputs.orientations, counts_surfaces, inputs.threads);
   }
   return std::make_unique<FastViewPredictor>(inputs.raster, inputs.voxel_size_m,
-                                             inputs.orientations, inputs.search.use_quality,
-                                             inputs.threads);
+                                             inputs.orientations, counts_surfaces, inputs.threads);
 }
 
 }  // namespace
 
 void PlannerParameters::check() const {
+  for (const double weight : weights) bounds::kFactorWeight.require(weight);
   bounds::kStep.require(step_min_m);
   bounds::kStep.require(step_max_m);
   if (step_min_m > step_max_m) {
@@ -142,14 +143,13 @@ std::optional<Decision> decide_by_simplex(const Situation& situation, ShortestPa
                                           ViewPredictor& predictor,
                                           const PlannerParameters& parameters) {
   parameters.check();
-  if (parameters.use_quality && !predictor.counts_quality()) {
-    throw std::invalid_argument("the view predictor does not count quality, but use_quality is on");
+  if (ask_for_surfaces(parameters.weights) && !predictor.counts_surfaces()) {
+    throw std::invalid_argument(
+        "a factor asks for the surfaces, which the view predictor does not count");
   }
   const SensorPose& present = situation.present;
   FeasiblePositions feasible(situation, paths, parameters.feasibility);
-  FactorWeights weights = {};
-  if (parameters.use_quality) weights[kQualityFactor] = 1.0;
-  ViewEvaluator evaluator(situation.space, predictor, weights, present);
+  ViewEvaluator evaluator(situation.space, predictor, parameters.weights, present, paths);
   const auto values = [&](std::span<const Eigen::Vector3d> positions_m) {
     std::vector<Eigen::Vector3d> reachable_m;
     std::vector<double> result(positions_m.size(), kInfeasible);
@@ -196,7 +196,7 @@ PaperStrategy::PaperStrategy(const PlannerParameters& search, const StopParamete
 }
 
 KnownSpace::Surfaces PaperStrategy::surfaces() const {
-  return predictor_->counts_quality() ? KnownSpace::Surfaces::Keep : KnownSpace::Surfaces::Leave;
+  return predictor_->counts_surfaces() ? KnownSpace::Surfaces::Keep : KnownSpace::Surfaces::Leave;
 }
 
 void PaperStrategy::view_folded(const FoldedView& folded) {
@@ -233,8 +233,8 @@ NextView PaperStrategy::next_view(const Situation& situation) {
 
 NextView PaperStrategy::last_look(const Situation& situation, StopReason otherwise) {
   paths_.find_all();
-  ViewEvaluator evaluator(situation.space, *predictor_, {}, situation.present);
-  ViewEvaluator coarse(situation.space, *coarse_predictor_, {}, situation.present);
+  ViewEvaluator evaluator(situation.space, *predictor_, {}, situation.present, paths_);
+  ViewEvaluator coarse(situation.space, *coarse_predictor_, {}, situation.present, paths_);
   const std::optional<LastLook::View> found =
       last_look_.best_view(situation, paths_, coarse, evaluator);
   if (!found) {
@@ -257,7 +257,9 @@ NextView PaperStrategy::last_look(const Situation& situation, StopReason otherwi
   const Orientation& orientation = evaluator.orientations()[found->best.orientation];
   decision.pose = {position_m(found->voxel), orientation.pan_rad, orientation.tilt_rad};
   decision.waypoints_m = paths_.waypoints_to_m(decision.pose.position_m);
-  decision.fitness = found->best.fitness;
+  decision.fitness =
+      ViewEvaluator(situation.space, *predictor_, search_.weights, situation.present, paths_)
+          .of_view(decision.pose.position_m, found->best.orientation);
   decision.evaluations = static_cast<int>(last_look_.voxels_asked());
   decision.strategy = kFacts.name;
   decision.reason = "the last views have shown nothing new; " + reason_of(decision);

@@ -18,9 +18,9 @@ namespace nextview {
 
 /// How the next best view is looked for (P19-P22).
 struct PlannerParameters {
-  bool use_quality = false;  ///< f_quality in the fitness (eq. 4)
-  double step_min_m = 0.3;   ///< distance of the initial simplex's vertices from the first ...
-  double step_max_m = 3.0;   ///< ... is drawn from this range
+  FactorWeights weights = default_weights();  ///< what the factors count in the fitness (eq. 4)
+  double step_min_m = 0.3;  ///< distance of the initial simplex's vertices from the first ...
+  double step_max_m = 3.0;  ///< ... is drawn from this range
   double fitness_tolerance = 0.01;  ///< the simplex stops when its fitness range falls below
   int max_evaluations = 70;         ///< or after this many positions
   FeasibilityParameters feasibility;
@@ -36,7 +36,7 @@ struct PlannerParameters {
 ///        not straight
 /// @return nothing when no position is feasible; the voxels of refused goals are not
 /// @throws std::invalid_argument for parameters that cannot be, or a predictor that does not count
-///         the quality that is asked for
+///         the surfaces that a factor asks for
 std::optional<Decision> decide_by_simplex(const Situation& situation, ShortestPaths& paths,
                                           ViewPredictor& predictor,
                                           const PlannerParameters& parameters);
@@ -52,7 +52,8 @@ class PaperStrategy : public Strategy {
                                         .views_with_quality = 300,
                                         .directions = 20,
                                         .ends_by_least_gain = false,
-                                        .ends_by_stop_rule = true};
+                                        .ends_by_stop_rule = true,
+                                        .weighs_factors = true};
   static std::unique_ptr<Strategy> make(const StrategyInputs& inputs);
 
   /// @param voxel_size_m of the map, for areas

@@ -34,7 +34,7 @@ Fitness fitness_of(const KnownSpace& space, const PredictionRaster& raster, cons
   PlainViewPredictor predictor(raster, space.map().grid().voxel_size_m, {orientation}, false);
   ViewCounts counts;
   predictor.predict(space, view.voxel, {&counts, 1});
-  return fitness(counts, {});
+  return fitness(counts);
 }
 
 }  // namespace

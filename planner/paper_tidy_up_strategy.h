@@ -54,7 +54,8 @@ class PaperTidyUpStrategy : public Strategy {
                                         .views_with_quality = 1000,
                                         .directions = 20,
                                         .ends_by_least_gain = false,
-                                        .ends_by_stop_rule = true};
+                                        .ends_by_stop_rule = true,
+                                        .weighs_factors = true};
   static std::unique_ptr<Strategy> make(const StrategyInputs& inputs);
 
   static constexpr int kMostInVain = 3;

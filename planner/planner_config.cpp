@@ -19,11 +19,21 @@ FeasibilityParameters feasibility_of(const run_config_t& config) {
           .lift_max_m = config.base.lift_max_m};
 }
 
+FactorWeights factor_weights_of(const run_config_t& config) {
+  const StrategyFacts* strategy = find_strategy(config.strategy);
+  if (strategy == nullptr || !strategy->weighs_factors) return {};
+  FactorWeights weights = {};
+  weights[kQualityFactor] = config.planner.quality_weight;
+  weights[kStructureFactor] = config.planner.structure_weight;
+  weights[kNavigationFactor] = config.planner.navigation_weight;
+  return weights;
+}
+
 namespace {
 
 PlannerParameters planner_parameters_of(const run_config_t& config) {
   PlannerParameters parameters;
-  parameters.use_quality = config.planner.quality_weight > 0.0;
+  parameters.weights = factor_weights_of(config);
   parameters.step_min_m = config.planner.step_min_m;
   parameters.step_max_m = config.planner.step_max_m;
   parameters.fitness_tolerance = config.planner.fitness_tolerance;

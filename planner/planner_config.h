@@ -3,6 +3,7 @@
 #include <memory>
 
 #include "lcmtypes/channels.h"
+#include "planner/factors.h"
 #include "planner/feasibility.h"
 #include "planner/view_planner.h"
 
@@ -10,6 +11,10 @@ namespace nextview {
 
 /// Where the robot of a run may be.
 FeasibilityParameters feasibility_of(const run_config_t& config);
+
+/// What the factors count in a run's fitness; nothing unless its strategy is the paper's, which
+/// alone goes by it.
+FactorWeights factor_weights_of(const run_config_t& config);
 
 /// The planner of a run, with the run's strategy.
 /// @throws std::invalid_argument for parameters that cannot be

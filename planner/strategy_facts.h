@@ -21,6 +21,9 @@ struct StrategyFacts {
   bool ends_by_least_gain;
   /// It ends the run by planner_config_t's stop_rule (P23).
   bool ends_by_stop_rule = false;
+  /// Its objective is the paper's fitness with planner_config_t's structure_weight and
+  /// navigation_weight (P18).
+  bool weighs_factors = false;
 };
 
 /// Of all strategies, in the order of planner/strategy_list.h.

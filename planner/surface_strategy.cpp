@@ -210,7 +210,7 @@ Decision SurfaceStrategy::decision(const SurfaceGain::Known& known,
   Decision decision;
   decision.waypoints_m = way_;
   decision.pose = {way_.back(), orientation.pan_rad, orientation.tilt_rad};
-  decision.fitness = fitness(gain_.counts(known, chosen.view.orientation), FactorWeights{});
+  decision.fitness = fitness(gain_.counts(known, chosen.view.orientation));
   decision.strategy = kFacts.name;
   decision.expected_gain_m2 = area_m2(chosen.view.new_voxels);
   decision.overlap = chosen.view.overlap;

@@ -8,6 +8,8 @@
 #include "logger/message_fields.h"
 #include "logger/recovered_run.h"
 #include "mapper/mapper_config.h"
+#include "planner/goal_message.h"
+#include "planner/planner_config.h"
 #include "reports/base64.h"
 #include "reports/page_files.h"
 #include "reports/picture_file.h"
@@ -72,6 +74,16 @@ std::vector<std::string> coverage_column(const std::filesystem::path& file) {
   return values;
 }
 
+/// The factors that count, by name.
+Json factors_of(const goal_t& goal, const FactorWeights& weights) {
+  Json factors = Json::object();
+  for (std::size_t i = 0; i < kFactors.size(); ++i) {
+    if (weights[i] == 0.0) continue;
+    factors[std::string(kFactors[i].name)] = factor_of(goal, kFactors[i].name);
+  }
+  return factors;
+}
+
 Json views_of(const RunRecord& record, const std::vector<std::string>& coverage) {
   Json views = Json::array();
   double path_m = 0.0;
@@ -103,6 +115,7 @@ Json views_of(const RunRecord& record, const std::vector<std::string>& coverage)
     if (goal != nullptr && view > 1) {
       row["fitness"] = goal->fitness;
       row["evaluations"] = goal->evaluations;
+      row["factors"] = factors_of(*goal, factor_weights_of(*record.config()));
       row["expected_gain_m2"] = goal->expected_gain_m2;
       row["reason"] = goal->reason;
     }

@@ -8,6 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 
+#include "planner/goal_message.h"
+#include "planner/planner_config.h"
 #include "reports/median.h"
 
 namespace nextview {
@@ -69,12 +71,20 @@ std::string seconds_text(const Duration& duration) {
   return duration ? fmt::format("{:.6f}", *duration) : std::string();
 }
 
-/// The value of one of a goal's factors; 0 of one it does not have.
-double factor_of(const goal_t& goal, std::string_view name) {
-  const std::vector<std::string_view> names = names_of(goal.factor_names);
-  const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end()) return 0.0;
-  return goal.factor_value[static_cast<std::size_t>(found - names.begin())];
+/// Those of kFactors that have no column in the contract's order, where quality has: their columns
+/// stand at the end.
+bool is_at_the_end(const Factor& factor) { return factor.name != "quality"; }
+
+/// The factors at the end, each after a comma; blank where they do not count.
+std::string factors_text(const ViewRow& row, const FactorWeights& weights) {
+  std::string text;
+  for (std::size_t i = 0; i < kFactors.size(); ++i) {
+    if (!is_at_the_end(kFactors[i])) continue;
+    text += ',';
+    if (!row.chosen() || weights[i] == 0.0) continue;
+    text += fmt::format("{:.6f}", factor_of(row.goal, kFactors[i].name));
+  }
+  return text;
 }
 
 /// A share, or a blank where it is not known.
@@ -144,7 +154,12 @@ void write_views(std::ostream& out, const FinishedRun& run) {
          "occupied_area_m2,occlusion_plane_area_m2,surface_coverage,map_digest,"
          "attempt,path_length_m,simulated_s,min_quality,share_occupied,share_occlusion_plane,"
          "share_unseen,share_open,quality_factor,"
-         "move_s,scan_s,update_s,digest_s,fold_s,wait_s,surface_precision\n";
+         "move_s,scan_s,update_s,digest_s,fold_s,wait_s,surface_precision";
+  for (const Factor& factor : kFactors) {
+    if (is_at_the_end(factor)) fmt::print(out, ",{}_factor", factor.name);
+  }
+  out << '\n';
+  const FactorWeights weights = factor_weights_of(run.config);
   for (const ViewRow& row : run.rows) {
     const commit_t& commit = row.commit;
     fmt::print(out, "{},{:.6f},{:.6f},{:.6f},{:.4f},{:.4f},{},", row.view,
@@ -167,7 +182,7 @@ void write_views(std::ostream& out, const FinishedRun& run) {
          {row.scan_s, row.update_s, row.digest_s, row.fold_s, row.wait_s}) {
       out << ',' << seconds_text(duration);
     }
-    out << ',' << share_text(row.surface_precision) << '\n';
+    out << ',' << share_text(row.surface_precision) << factors_text(row, weights) << '\n';
   }
 }
 

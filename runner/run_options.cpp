@@ -356,6 +356,18 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
          "quality")
       ->check(CLI::IsMember(stop_rule_names()))
       ->group(group);
+  app.add_option("--structure-weight", options.structure_weight,
+                 "paper: what a view counts more for seeing surfaces that tell where it was taken "
+                 "from (f_structure); the paper's product has 1, 0: off")
+      ->check(number_within(bounds::kFactorWeight))
+      ->capture_default_str()
+      ->group(group);
+  app.add_option("--navigation-weight", options.navigation_weight,
+                 "paper: what a view counts more for being near by real paths (f_navigation); "
+                 "likewise")
+      ->check(number_within(bounds::kFactorWeight))
+      ->capture_default_str()
+      ->group(group);
   app.add_option("--quality-threshold", options.quality_threshold,
                  "Rule quality: the quality every voxel should reach, 0 to 1")
       ->check(number_within(bounds::kQualityThreshold))

@@ -32,6 +32,8 @@ struct RunOptions {
   std::int64_t seed = 1;
   std::optional<int> views;  ///< default: as the strategy says
   bool quality = false;
+  double structure_weight = kFactors[kStructureFactor].default_weight;
+  double navigation_weight = kFactors[kNavigationFactor].default_weight;
   std::string out;  ///< folder of the run; empty: a new one in runs_folder
   std::string runs_folder = "runs";
 

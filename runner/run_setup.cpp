@@ -187,6 +187,14 @@ void fill_planner(run_config_t& config, const RunOptions& options) {
   }
   const StrategyFacts* strategy = find_strategy(options.strategy);
   if (strategy == nullptr) throw SetupError("--strategy: " + no_such_strategy(options.strategy));
+  if (!strategy->weighs_factors &&
+      (options.structure_weight != 0.0 || options.navigation_weight != 0.0)) {
+    throw SetupError(
+        "--structure-weight and --navigation-weight weigh the paper's fitness, which --strategy " +
+        options.strategy + " does not have: give --strategy paper, or for the way --path-cost");
+  }
+  config.planner.structure_weight = options.structure_weight;
+  config.planner.navigation_weight = options.navigation_weight;
   config.planner.max_views =
       options.views.value_or(options.quality ? strategy->views_with_quality : strategy->views);
   config.planner.max_attempts = options.max_attempts;

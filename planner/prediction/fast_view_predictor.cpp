@@ -91,9 +91,9 @@ void append(const Packet& packet, RayBundle& bundle) {
 }  // namespace
 
 FastViewPredictor::FastViewPredictor(const PredictionRaster& raster, double voxel_size_m,
-                                     std::vector<Orientation> orientations, bool counts_quality,
+                                     std::vector<Orientation> orientations, bool counts_surfaces,
                                      int threads)
-    : RasterViewPredictor(raster, voxel_size_m, std::move(orientations), counts_quality),
+    : RasterViewPredictor(raster, voxel_size_m, std::move(orientations), counts_surfaces),
       rays_per_view_(static_cast<std::int64_t>(raster.rays.pixels())),
       packets_of_(this->orientations().size()),
       workspaces_(static_cast<std::size_t>(std::max(threads, 1))) {
@@ -118,12 +118,12 @@ void FastViewPredictor::make_tables(const PredictionRaster& raster, double voxel
     table.bundle.direction = i % 2 == 0 ? 1 : -1;
     for (const Packet& packet : packets[i]) {
       append(packet, table.bundle);
-      if (!counts_quality()) continue;
+      if (!counts_surfaces()) continue;
       packets_of_[static_cast<std::size_t>(packet.orientation)].push_back(
           {i, table.bundle.packets.size() - 1});
       for (const TabulatedRay& ray : packet.rays) table.directions.push_back(ray.direction);
     }
-    if (counts_quality()) table.occupied_at.resize(table.bundle.rays());
+    if (counts_surfaces()) table.occupied_at.resize(table.bundle.rays());
   }
 }
 
@@ -139,7 +139,7 @@ void FastViewPredictor::predict_all(const KnownSpace& space, std::span<const Vox
   for (const VoxelIndex& sensor : sensors) check_arguments(space.map(), sensor, views);
   std::fill(counts.begin(), counts.end(), ViewCounts());
   // The tables remember what the rays of one sensor met.
-  const std::size_t together = counts_quality() ? 1 : sensors.size();
+  const std::size_t together = counts_surfaces() ? 1 : sensors.size();
   for (std::size_t i = 0; i < sensors.size(); i += together) {
     predict_together(space, sensors.subspan(i, together),
                      counts.subspan(i * views, together * views));
@@ -157,7 +157,7 @@ void FastViewPredictor::fill_queues(std::size_t jobs) {
 void FastViewPredictor::predict_together(const KnownSpace& space,
                                          std::span<const VoxelIndex> sensors,
                                          std::span<ViewCounts> counts) {
-  const SurfaceTable* const surfaces = counts_quality() ? &space.surfaces() : nullptr;
+  const SurfaceTable* const surfaces = counts_surfaces() ? &space.surfaces() : nullptr;
   fill_queues(sensors.size() * tables_.size());
   std::size_t team = 1;  // there can be fewer threads than were asked for
 #pragma omp parallel num_threads(threads()) if (threads() > 1)
@@ -172,7 +172,7 @@ void FastViewPredictor::predict_together(const KnownSpace& space,
 #pragma omp barrier
 #pragma omp for schedule(dynamic)
       for (std::size_t i = 0; i < counts.size(); ++i) {
-        count_improvements(*surfaces, i, workspace, counts[i]);
+        count_surfaces(*surfaces, i, workspace, counts[i]);
       }
     }
   }
@@ -210,23 +210,23 @@ void FastViewPredictor::cast(const FreeSpaceField& field, Table& table, PacketQu
                              const VoxelIndex& sensor, RayCounts* counts) const {
   RayOutcomes outcomes;
   outcomes.counts = counts;
-  if (counts_quality()) outcomes.occupied_at = table.occupied_at.data();
+  if (counts_surfaces()) outcomes.occupied_at = table.occupied_at.data();
   cast_bundle(field.bytes(), field.shifts(), static_cast<std::int32_t>(field.offset(sensor)),
               field.steps_from(sensor), table.bundle, queue, outcomes);
 }
 
-void FastViewPredictor::count_improvements(const SurfaceTable& surfaces, std::size_t orientation,
-                                           Workspace& workspace, ViewCounts& counts) const {
+void FastViewPredictor::count_surfaces(const SurfaceTable& surfaces, std::size_t orientation,
+                                       Workspace& workspace, ViewCounts& counts) const {
   for (const auto& [number, packet] : packets_of_[orientation]) {
     const std::int32_t* const occupied_at = &tables_[number].occupied_at[packet * kPacketRays];
     const QuantisedDirection* const rays = &tables_[number].directions[packet * kPacketRays];
     for (std::size_t i = 0; i < kPacketRays; ++i) {
       if (occupied_at[i] < 0) continue;
       const std::uint32_t surface = surfaces.number_at(static_cast<std::size_t>(occupied_at[i]));
-      workspace.improvement.add(surface, quantised_cosine(surfaces[surface].normal, rays[i]));
+      workspace.surfaces.add(surface, quantised_cosine(surfaces[surface].normal, rays[i]));
     }
   }
-  workspace.improvement.finish(surfaces, counts);
+  workspace.surfaces.finish(surfaces, counts);
 }
 
 }  // namespace nextview

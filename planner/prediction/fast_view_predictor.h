@@ -22,7 +22,7 @@ class FastViewPredictor : public RasterViewPredictor {
   /// @throws std::invalid_argument when there are no orientations, rays or threads, or a length is
   ///         not positive
   FastViewPredictor(const PredictionRaster& raster, double voxel_size_m,
-                    std::vector<Orientation> orientations, bool counts_quality, int threads = 1);
+                    std::vector<Orientation> orientations, bool counts_surfaces, int threads = 1);
 
   void predict(const KnownSpace& space, const VoxelIndex& sensor,
                std::span<ViewCounts> per_orientation) override;
@@ -33,8 +33,8 @@ class FastViewPredictor : public RasterViewPredictor {
   // Rays of all orientations that drive in the same direction.
   struct Table {
     RayBundle bundle;                            // its groups are orientations
-    std::vector<QuantisedDirection> directions;  // world frame, by ray; for f_quality only
-    std::vector<std::int32_t> occupied_at;       // where rays ended; for f_quality only
+    std::vector<QuantisedDirection> directions;  // world frame, by ray; for surface counts only
+    std::vector<std::int32_t> occupied_at;       // where rays ended; for surface counts only
   };
   struct PacketOfView {
     std::size_t table;
@@ -43,7 +43,7 @@ class FastViewPredictor : public RasterViewPredictor {
   // What one thread works with.
   struct Workspace {
     std::vector<RayCounts> counts;  // by sensor, then by orientation
-    ImprovementCount improvement;
+    SurfaceCount surfaces;
   };
   // The jobs of a prediction are all tables from the first sensor, then all from the next. Each
   // thread begins with jobs of its own, the same number for all as far as that goes.
@@ -62,12 +62,12 @@ class FastViewPredictor : public RasterViewPredictor {
   void add_up(std::span<const Workspace> workspaces, std::span<ViewCounts> counts) const;
   void cast(const FreeSpaceField& field, Table& table, PacketQueue& queue, const VoxelIndex& sensor,
             RayCounts* counts) const;
-  void count_improvements(const SurfaceTable& surfaces, std::size_t orientation,
-                          Workspace& workspace, ViewCounts& counts) const;
+  void count_surfaces(const SurfaceTable& surfaces, std::size_t orientation, Workspace& workspace,
+                      ViewCounts& counts) const;
 
   std::int64_t rays_per_view_;
   std::array<Table, 6> tables_;                        // by driving axis and sign
-  std::vector<std::vector<PacketOfView>> packets_of_;  // by orientation; for f_quality only
+  std::vector<std::vector<PacketOfView>> packets_of_;  // by orientation; for surface counts only
   std::vector<Workspace> workspaces_;                  // by thread
   std::vector<PacketQueue> queues_;                    // by job
 };

@@ -28,7 +28,7 @@ void KnownSpace::update(std::span<const std::uint32_t> changed_slots,
 
 const SurfaceTable& KnownSpace::surfaces() const {
   if (!keeps_surfaces()) {
-    throw std::logic_error("quality is to be predicted in a space that keeps no surfaces");
+    throw std::logic_error("surfaces are to be counted in a space that keeps none");
   }
   return surfaces_;
 }

@@ -16,7 +16,7 @@ class KnownSpace {
  public:
   enum class Surfaces : std::uint8_t {
     Leave,
-    Keep,  ///< normals and qualities too, which f_quality asks for (P17)
+    Keep,  ///< normals and qualities too, which f_quality and f_structure ask for (P17, P18)
   };
 
   /// Derives all of it from a map, which must outlive this object.

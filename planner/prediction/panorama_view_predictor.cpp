@@ -1,5 +1,7 @@
 #include "planner/prediction/panorama_view_predictor.h"
 
+#include <omp.h>
+
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -39,6 +41,15 @@ Eigen::Vector3d cell_direction(const Cell& cell) {
   direction[(axis + 1) % 3] = slope(cell.column);
   direction[(axis + 2) % 3] = slope(cell.row);
   return direction.normalized();
+}
+
+// The other way round than cell_number.
+Cell cell_numbered(int number) {
+  const int tile = number / 64;
+  const int quarter = number % 64 / 16;
+  const int row = tile / (kSide / 8) % (kSide / 8) * 8 + quarter / 2 * 4 + number % 16 / 4;
+  const int column = tile % (kSide / 8) * 8 + quarter % 2 * 4 + number % 4;
+  return {number / (kSide * kSide), row, column};
 }
 
 Cell cell_of(const Eigen::Vector3d& direction) {
@@ -83,15 +94,36 @@ std::vector<RayBundle> cube_faces(double reach) {
 }  // namespace
 
 PanoramaViewPredictor::PanoramaViewPredictor(const PredictionRaster& raster, double voxel_size_m,
-                                             std::vector<Orientation> orientations, int threads)
-    : RasterViewPredictor(raster, voxel_size_m, std::move(orientations), false),
+                                             std::vector<Orientation> orientations,
+                                             bool counts_surfaces, int threads)
+    : RasterViewPredictor(raster, voxel_size_m, std::move(orientations), counts_surfaces),
       rays_per_view_(static_cast<std::int64_t>(raster.rays.pixels())),
-      threads_(threads) {
+      surface_counts_(static_cast<std::size_t>(std::max(threads, 1))) {
   if (threads < 1) throw std::invalid_argument("a view predictor needs a thread");
   faces_ = cube_faces(prediction_reach(raster, voxel_size_m));
   for (const Orientation& orientation : this->orientations()) {
     append_view(raster.rays, orientation);
   }
+  if (!counts_surfaces) return;
+  panorama_.occupied_at.resize(kCells);
+  panorama_.sightings.resize(kCells);
+  for (int cell = 0; cell < kCells; ++cell) {
+    directions_.push_back(quantise_direction(cell_direction(cell_numbered(cell))));
+  }
+}
+
+std::vector<Eigen::Vector3d> PanoramaViewPredictor::rays() const {
+  std::vector<Eigen::Vector3d> rays;
+  for (const View& view : views_) {
+    for (std::uint32_t i = view.begin; i < view.end; ++i) {
+      for (std::uint64_t cells = weights_[i].cells; cells != 0; cells &= cells - 1) {
+        const int cell = static_cast<int>(weights_[i].word) * 64 + std::countr_zero(cells);
+        rays.insert(rays.end(), std::size_t{1} << weights_[i].plane,
+                    cell_direction(cell_numbered(cell)));
+      }
+    }
+  }
+  return rays;
 }
 
 void PanoramaViewPredictor::append_view(const RayTable& rays, const Orientation& orientation) {
@@ -152,10 +184,16 @@ void PanoramaViewPredictor::predict(const KnownSpace& space, const VoxelIndex& s
   for (auto* bits : {&panorama_.occupied, &panorama_.occlusion_plane, &panorama_.unseen}) {
     bits->assign(kWords, 0);
   }
-#pragma omp parallel num_threads(threads_) if (threads_ > 1)
+  const SurfaceTable* const surfaces = counts_surfaces() ? &space.surfaces() : nullptr;
+  const auto threads = static_cast<int>(surface_counts_.size());
+#pragma omp parallel num_threads(threads) if (threads > 1)
   {
+    SurfaceCount& count_of_thread = surface_counts_[static_cast<std::size_t>(omp_get_thread_num())];
 #pragma omp for schedule(dynamic)
-    for (std::size_t face = 0; face < faces_.size(); ++face) cast_face(space.field(), face, sensor);
+    for (std::size_t face = 0; face < faces_.size(); ++face) {
+      cast_face(space.field(), face, sensor);
+      if (surfaces != nullptr) look_up(*surfaces, face);
+    }
     const bool any_open = any_is_open();
 #pragma omp for schedule(dynamic, 16)
     for (std::size_t i = 0; i < views_.size(); ++i) {
@@ -164,6 +202,7 @@ void PanoramaViewPredictor::predict(const KnownSpace& space, const VoxelIndex& s
           count(panorama_, any_open, &weights_[views_[i].begin], weights_.data() + views_[i].end);
       std::int64_t& rest = any_open ? counts.open : counts.unseen;
       rest = rays_per_view_ - counts.occupied - counts.occlusion_plane - counts.unseen;
+      if (surfaces != nullptr) count_surfaces(*surfaces, views_[i], count_of_thread, counts);
     }
   }
 }
@@ -177,8 +216,35 @@ void PanoramaViewPredictor::cast_face(const FreeSpaceField& field, std::size_t f
   outcomes.occupied = reinterpret_cast<std::uint8_t*>(&panorama_.occupied[word]);
   outcomes.occlusion_plane = reinterpret_cast<std::uint8_t*>(&panorama_.occlusion_plane[word]);
   outcomes.unseen = reinterpret_cast<std::uint8_t*>(&panorama_.unseen[word]);
+  if (counts_surfaces()) outcomes.occupied_at = &panorama_.occupied_at[word * 64];
   cast_bundle(field.bytes(), field.shifts(), static_cast<std::int32_t>(field.offset(sensor)),
               field.steps_from(sensor), faces_[face], packets, outcomes);
+}
+
+void PanoramaViewPredictor::look_up(const SurfaceTable& surfaces, std::size_t face) {
+  const std::size_t first = face * kSide * kSide;
+  for (std::size_t cell = first; cell < first + kSide * kSide; ++cell) {
+    if (panorama_.occupied_at[cell] < 0) continue;
+    const auto offset = static_cast<std::size_t>(panorama_.occupied_at[cell]);
+    const std::uint32_t surface = surfaces.number_at(offset);
+    panorama_.sightings[cell] = {surface,
+                                 quantised_cosine(surfaces[surface].normal, directions_[cell])};
+  }
+}
+
+void PanoramaViewPredictor::count_surfaces(const SurfaceTable& surfaces, const View& view,
+                                           SurfaceCount& count, ViewCounts& counts) const {
+  for (std::uint32_t i = view.begin; i < view.end;) {
+    const std::uint32_t word = weights_[i].word;
+    std::uint64_t cells = 0;
+    for (; i < view.end && weights_[i].word == word; ++i) cells |= weights_[i].cells;
+    for (cells &= panorama_.occupied[word]; cells != 0; cells &= cells - 1) {
+      const std::size_t cell =
+          std::size_t{word} * 64 + static_cast<std::size_t>(std::countr_zero(cells));
+      count.add(panorama_.sightings[cell].surface, panorama_.sightings[cell].cosine);
+    }
+  }
+  count.finish(surfaces, counts);
 }
 
 }  // namespace nextview

@@ -5,6 +5,7 @@
 
 #include "planner/prediction/free_space_field.h"
 #include "planner/prediction/ray_kernel.h"
+#include "planner/prediction/surface_table.h"
 #include "planner/prediction/view_predictor.h"
 
 namespace nextview {
@@ -21,7 +22,10 @@ namespace nextview {
 /// and of these words of 64 cells only the two dozen a view covers are looked at. Where no ray of
 /// the panorama is open, as in most rooms, what is unseen is what is left. Counts differ from
 /// PlainViewPredictor's as the direction of a ray is rounded to its cell's, by 1.4 degrees / 2 at
-/// most along each side. Of the quality of surfaces nothing is counted.
+/// most along each side; with the rays that rays() says it counts the same.
+///
+/// Surfaces are counted over the cells of a view that have any weight: what each of the panorama's
+/// cells meets is looked up once, for all views.
 class PanoramaViewPredictor : public RasterViewPredictor {
  public:
   static constexpr int kFaceSide = 64;  ///< 90 / 64 = 1.4 degrees a cell; a multiple of 8
@@ -30,7 +34,12 @@ class PanoramaViewPredictor : public RasterViewPredictor {
   /// @throws std::invalid_argument when there are no orientations, rays or threads, or a length is
   ///         not positive
   PanoramaViewPredictor(const PredictionRaster& raster, double voxel_size_m,
-                        std::vector<Orientation> orientations, int threads = 1);
+                        std::vector<Orientation> orientations, bool counts_surfaces,
+                        int threads = 1);
+
+  /// The rays it counts, unit vectors of the world frame: for each orientation as many as the
+  /// raster has, each the middle of its cell.
+  std::vector<Eigen::Vector3d> rays() const;
 
   void predict(const KnownSpace& space, const VoxelIndex& sensor,
                std::span<ViewCounts> per_orientation) override;
@@ -46,19 +55,29 @@ class PanoramaViewPredictor : public RasterViewPredictor {
     std::uint64_t cells;
   };
   struct View {
-    std::uint32_t begin;  // its WeightWords
+    std::uint32_t begin;  // its WeightWords, those of a word side by side
     std::uint32_t end;
+  };
+  // What the ray of a cell that meets an Occupied voxel does there.
+  struct Sighting {
+    std::uint32_t surface;
+    std::int32_t cosine;
   };
   struct Panorama {
     std::vector<std::uint64_t> occupied;
     std::vector<std::uint64_t> occlusion_plane;
     std::vector<std::uint64_t> unseen;
+    std::vector<std::int32_t> occupied_at;  // by cell; these two for surface counts only
+    std::vector<Sighting> sightings;        // by cell; of those that met nothing Occupied as it was
   };
 
   void cast_face(const FreeSpaceField& field, std::size_t face, const VoxelIndex& sensor);
+  void look_up(const SurfaceTable& surfaces, std::size_t face);
   void append_view(const RayTable& rays, const Orientation& orientation);
   static ViewCounts count(const Panorama& panorama, bool any_open, const WeightWord* begin,
                           const WeightWord* end);
+  void count_surfaces(const SurfaceTable& surfaces, const View& view, SurfaceCount& count,
+                      ViewCounts& counts) const;
   bool any_is_open() const;
 
   std::int64_t rays_per_view_;
@@ -66,7 +85,8 @@ class PanoramaViewPredictor : public RasterViewPredictor {
   std::vector<WeightWord> weights_;
   std::vector<View> views_;
   Panorama panorama_;
-  int threads_;
+  std::vector<QuantisedDirection> directions_;  // by cell; for surface counts only
+  std::vector<SurfaceCount> surface_counts_;    // by thread
 };
 
 }  // namespace nextview

@@ -56,9 +56,10 @@ void SurfaceTable::move(const FreeSpaceField& field, const VoxelIndex& step) {
   }
 }
 
-void ImprovementCount::finish(const SurfaceTable& surfaces, ViewCounts& counts) {
+void SurfaceCount::finish(const SurfaceTable& surfaces, ViewCounts& counts) {
   counts.occupied_voxels = static_cast<std::int64_t>(met_.size());
   for (const std::uint32_t surface : met_) {
+    counts.normals.add(surfaces[surface].normal);
     const int gain = predicted_quality(best_[surface]) - surfaces[surface].quality;
     if (gain > 0) {
       ++counts.improved_voxels;

@@ -14,7 +14,8 @@
 
 namespace nextview {
 
-/// What f_quality asks of the Occupied voxels, found by where a ray ended in a FreeSpaceField:
+/// What f_quality and f_structure ask of the Occupied voxels, found by where a ray ended in a
+/// FreeSpaceField:
 /// normal and quality lie densely by a surface number, and a sparse table of pages leads from an
 /// offset to the number. The offset and not the map's slot, which would not change when the window
 /// moves: to work that out for every ray took 10 to 17 % of a decision with f_quality, and a move
@@ -55,8 +56,9 @@ class SurfaceTable {
   std::vector<std::uint32_t> free_;  ///< numbers of what was forgotten
 };
 
-/// Counts the distinct Occupied voxels of one view after the other, and what it would gain.
-class ImprovementCount {
+/// Counts the distinct Occupied voxels of one view after the other: what it would gain, and how
+/// their normals are spread.
+class SurfaceCount {
  public:
   /// One ray of the view at hand met an Occupied voxel.
   void add(std::uint32_t surface, std::int32_t cosine) {

@@ -38,8 +38,9 @@ void ViewPredictor::predict_all(const KnownSpace& space, std::span<const VoxelIn
 }
 
 RasterViewPredictor::RasterViewPredictor(const PredictionRaster& raster, double voxel_size_m,
-                                         std::vector<Orientation> orientations, bool counts_quality)
-    : ViewPredictor(std::move(orientations), counts_quality), voxel_size_m_(voxel_size_m) {
+                                         std::vector<Orientation> orientations,
+                                         bool counts_surfaces)
+    : ViewPredictor(std::move(orientations), counts_surfaces), voxel_size_m_(voxel_size_m) {
   if (this->orientations().empty() || raster.rays.pixels() == 0) {
     throw std::invalid_argument("a view predictor needs orientations and rays");
   }
@@ -59,22 +60,37 @@ void RasterViewPredictor::check_arguments(const VoxelMap& map, const VoxelIndex&
 }
 
 PlainViewPredictor::PlainViewPredictor(const PredictionRaster& raster, double voxel_size_m,
-                                       std::vector<Orientation> orientations, bool counts_quality)
-    : RasterViewPredictor(raster, voxel_size_m, std::move(orientations), counts_quality),
+                                       std::vector<Orientation> orientations, bool counts_surfaces)
+    : PlainViewPredictor(raster, voxel_size_m, orientations, counts_surfaces,
+                         rays_of(raster.rays, orientations)) {}
+
+PlainViewPredictor::PlainViewPredictor(const PredictionRaster& raster, double voxel_size_m,
+                                       std::vector<Orientation> orientations, bool counts_surfaces,
+                                       std::span<const Eigen::Vector3d> rays)
+    : RasterViewPredictor(raster, voxel_size_m, std::move(orientations), counts_surfaces),
       rays_per_view_(raster.rays.pixels()) {
+  if (rays.size() != this->orientations().size() * rays_per_view_) {
+    throw std::invalid_argument("a view predictor needs as many rays as its raster has");
+  }
   const double reach = prediction_reach(raster, voxel_size_m);
-  rays_.reserve(this->orientations().size() * rays_per_view_);
-  for (const Orientation& orientation : this->orientations()) {
+  rays_.reserve(rays.size());
+  for (const Eigen::Vector3d& ray : rays) {
+    rays_.push_back({line_along(VoxelIndex::Zero(), ray, reach), quantise_direction(ray)});
+  }
+}
+
+std::vector<Eigen::Vector3d> PlainViewPredictor::rays_of(
+    const RayTable& rays, std::span<const Orientation> orientations) {
+  std::vector<Eigen::Vector3d> directions;
+  directions.reserve(orientations.size() * rays.pixels());
+  for (const Orientation& orientation : orientations) {
     const Eigen::Matrix3d rotation =
         world_from_sensor_rotation(orientation.pan_rad, orientation.tilt_rad);
-    for (int v = 0; v < raster.rays.rows(); ++v) {
-      for (int u = 0; u < raster.rays.columns(); ++u) {
-        const Eigen::Vector3d direction = rotation * raster.rays.ray(u, v);
-        rays_.push_back(
-            {line_along(VoxelIndex::Zero(), direction, reach), quantise_direction(direction)});
-      }
+    for (int v = 0; v < rays.rows(); ++v) {
+      for (int u = 0; u < rays.columns(); ++u) directions.push_back(rotation * rays.ray(u, v));
     }
   }
+  return directions;
 }
 
 void PlainViewPredictor::predict(const KnownSpace& space, const VoxelIndex& sensor,
@@ -114,7 +130,7 @@ ViewCounts PlainViewPredictor::predict_view(const VoxelMap& map, const VoxelInde
         break;
       case Label::Occupied:
         ++counts.occupied;
-        if (counts_quality()) {
+        if (counts_surfaces()) {
           const SurfaceVoxel* surface = map.surface(voxel);
           const QuantisedDirection normal = surface == nullptr
                                                 ? QuantisedDirection{0, 0, 0}
@@ -124,11 +140,11 @@ ViewCounts PlainViewPredictor::predict_view(const VoxelMap& map, const VoxelInde
         break;
     }
   }
-  if (counts_quality()) count_improvements(map, counts);
+  if (counts_surfaces()) count_surfaces(map, counts);
   return counts;
 }
 
-void PlainViewPredictor::count_improvements(const VoxelMap& map, ViewCounts& counts) {
+void PlainViewPredictor::count_surfaces(const VoxelMap& map, ViewCounts& counts) {
   // Sightings of the same voxel side by side, the best first.
   std::sort(sightings_.begin(), sightings_.end(), [&map](const Sighting& a, const Sighting& b) {
     const std::size_t slot_a = map.slot(a.voxel);
@@ -141,6 +157,7 @@ void PlainViewPredictor::count_improvements(const VoxelMap& map, ViewCounts& cou
     ++counts.occupied_voxels;
     const SurfaceVoxel* surface = map.surface(sighting.voxel);
     if (surface == nullptr) continue;
+    counts.normals.add(quantise_direction(surface->mean_normal()));
     const int gain = predicted_quality(sighting.cosine) - surface->quality;
     if (gain > 0) {
       ++counts.improved_voxels;

@@ -45,13 +45,13 @@ class ViewPredictor {
   virtual ~ViewPredictor() = default;
 
   const std::vector<Orientation>& orientations() const { return orientations_; }
-  /// Whether ViewCounts' surface counts are wanted (f_quality).
-  bool counts_quality() const { return counts_quality_; }
+  /// Whether ViewCounts' surface counts are wanted (f_quality, f_structure).
+  bool counts_surfaces() const { return counts_surfaces_; }
 
   /// Fills the counts of every orientation, in the order of orientations().
   /// @throws std::invalid_argument when the sensor's voxel lies outside the window, or the number
   ///         of counts or the map's voxel size is not what the predictor was made for
-  /// @throws std::logic_error when quality is counted and the space keeps no surfaces
+  /// @throws std::logic_error when surfaces are counted and the space keeps none
   virtual void predict(const KnownSpace& space, const VoxelIndex& sensor,
                        std::span<ViewCounts> per_orientation) = 0;
 
@@ -63,8 +63,8 @@ class ViewPredictor {
                            std::span<ViewCounts> counts);
 
  protected:
-  ViewPredictor(std::vector<Orientation> orientations, bool counts_quality)
-      : orientations_(std::move(orientations)), counts_quality_(counts_quality) {}
+  ViewPredictor(std::vector<Orientation> orientations, bool counts_surfaces)
+      : orientations_(std::move(orientations)), counts_surfaces_(counts_surfaces) {}
   /// Throws what predict_all() promises of the number of counts.
   void check_count(std::size_t sensors, std::size_t counts) const;
 
@@ -73,7 +73,7 @@ class ViewPredictor {
 
  private:
   std::vector<Orientation> orientations_;
-  bool counts_quality_;
+  bool counts_surfaces_;
 };
 
 /// A predictor that tabulates the rays of a raster for voxels of one size.
@@ -82,7 +82,7 @@ class RasterViewPredictor : public ViewPredictor {
   /// @throws std::invalid_argument when there are no orientations or rays, or a length is not
   ///         positive
   RasterViewPredictor(const PredictionRaster& raster, double voxel_size_m,
-                      std::vector<Orientation> orientations, bool counts_quality);
+                      std::vector<Orientation> orientations, bool counts_surfaces);
 
   /// Throws what predict() promises.
   void check_arguments(const VoxelMap& map, const VoxelIndex& sensor, std::size_t counts) const;
@@ -97,7 +97,13 @@ class PlainViewPredictor : public RasterViewPredictor {
   /// @throws std::invalid_argument when there are no orientations or rays, or a length is not
   ///         positive
   PlainViewPredictor(const PredictionRaster& raster, double voxel_size_m,
-                     std::vector<Orientation> orientations, bool counts_quality);
+                     std::vector<Orientation> orientations, bool counts_surfaces);
+  /// With other rays than the raster's, as many of them for each orientation.
+  /// @param rays by orientation; unit vectors of the world frame
+  /// @throws std::invalid_argument also unless there are as many
+  PlainViewPredictor(const PredictionRaster& raster, double voxel_size_m,
+                     std::vector<Orientation> orientations, bool counts_surfaces,
+                     std::span<const Eigen::Vector3d> rays);
 
   void predict(const KnownSpace& space, const VoxelIndex& sensor,
                std::span<ViewCounts> per_orientation) override;
@@ -112,8 +118,10 @@ class PlainViewPredictor : public RasterViewPredictor {
     std::int32_t cosine;
   };
 
+  static std::vector<Eigen::Vector3d> rays_of(const RayTable& rays,
+                                              std::span<const Orientation> orientations);
   ViewCounts predict_view(const VoxelMap& map, const VoxelIndex& sensor, std::span<const Ray> rays);
-  void count_improvements(const VoxelMap& map, ViewCounts& counts);
+  void count_surfaces(const VoxelMap& map, ViewCounts& counts);
 
   std::size_t rays_per_view_;
   std::vector<Ray> rays_;            // by orientation, then by pixel

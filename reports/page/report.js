@@ -129,9 +129,11 @@ const kColumns = [["view", (v) => v.view], ["x", (v) => fixed(v.x, 2)], ["y", (v
   ["coverage", (v) => (known(v.surface_coverage) ? fixed(v.surface_coverage, 4) : "")], ["plan ms", (v) => (known(v.plan_ms) ? fixed(v.plan_ms, 2) : "")]];
 function showViews() {
   runs.forEach((run, i) => {
-    const table = make("table", {}, make("thead", {}, make("tr", {}, ...kColumns.map(([name]) => make("th", { class: "number", scope: "col" }, name)))));
+    const factors = [...new Set(run.views.flatMap((v) => Object.keys(v.factors ?? {})))];
+    const columns = [...kColumns, ...factors.map((name) => [`f ${name}`, (v) => (known(v.factors?.[name]) ? fixed(v.factors[name], 3) : "")])];
+    const table = make("table", {}, make("thead", {}, make("tr", {}, ...columns.map(([name]) => make("th", { class: "number", scope: "col" }, name)))));
     for (const view of run.views) {
-      const line = make("tr", { "data-view": view.view }, ...kColumns.map(([, of]) => make("td", { class: "number" }, String(of(view)))));
+      const line = make("tr", { "data-view": view.view }, ...columns.map(([, of]) => make("td", { class: "number" }, String(of(view)))));
       line.addEventListener("click", () => showView(view.view));
       table.append(line);
     }

@@ -364,8 +364,22 @@ TEST(Validate, RunConfig) {
       {"a fourth rule", [](run_config_t& m) { m.planner.stop_rule = 4; }},
       {"columns to predict with", [](run_config_t& m) { m.planner.prediction_columns = 32; }},
       {"rows to predict with", [](run_config_t& m) { m.planner.prediction_rows = 32; }},
-      {"structure", [](run_config_t& m) { m.planner.structure_weight = 1.0; }},
-      {"navigation", [](run_config_t& m) { m.planner.navigation_weight = 1.0; }},
+      {"more structure than there may be",
+       [](run_config_t& m) { m.planner.structure_weight = 10.1; }},
+      {"structure in the way", [](run_config_t& m) { m.planner.structure_weight = -1.0; }},
+      {"NaN navigation", [](run_config_t& m) { m.planner.navigation_weight = kNan; }},
+      {"the surface strategy with structure",
+       [](run_config_t& m) {
+         m.strategy = "surface";
+         m.planner.least_gain_m2 = 0.05;
+         m.planner.structure_weight = 1.0;
+       }},
+      {"the surface strategy with navigation",
+       [](run_config_t& m) {
+         m.strategy = "surface";
+         m.planner.least_gain_m2 = 0.05;
+         m.planner.navigation_weight = 1.0;
+       }},
       {"a negative path cost", [](run_config_t& m) { m.planner.path_cost_per_m = -0.1; }},
       {"a later departure of 6 m", [](run_config_t& m) { m.planner.later_departure_m = 6.0; }},
       {"an overlap above 1", [](run_config_t& m) { m.planner.least_overlap = 1.2; }},
@@ -377,6 +391,13 @@ TEST(Validate, RunConfig) {
       {"no file", [](run_config_t& m) { m.scene_file.clear(); }},
       {"no digest", [](run_config_t& m) { m.scene_digest.clear(); }},
   });
+}
+
+TEST(Validate, TheFactorsOfThePapersFitness) {
+  run_config_t config = example<run_config_t>();
+  config.planner.structure_weight = 10.0;
+  config.planner.navigation_weight = 0.5;
+  EXPECT_EQ(check(config), "");
 }
 
 TEST(Validate, EverySensorThereIs) {

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 
+#include "logger/expected_message.h"
 #include "logger/unchecked_fields.h"
 #include "sensor/range_image_message.h"
 #include "tests/logger/recorded_run.h"
@@ -63,6 +64,31 @@ TEST(Replay, AgreesToARunWithARefusal) {
   EXPECT_EQ(report.goals, 4);  // two at view 3
   EXPECT_EQ(report.stop_reason, "view_limit");
   EXPECT_TRUE(report.remarks.empty()) << lines_of(report);
+}
+
+// As a version did that knew of quality only.
+TEST(Replay, AgreesToGoalsThatNameFewerFactorsWhereTheOthersAreOff) {
+  const auto log = changed<goal_t>(recorded(), [](goal_t& goal) {
+    if (goal.view == 1) return;
+    ASSERT_EQ(goal.factor_names, "quality,structure,navigation");
+    goal.factor_names = "quality";
+    goal.factors = 1;
+    goal.factor_value.resize(1);
+  });
+  EXPECT_EQ(replayed(log).exit_status(), 0) << lines_of(replayed(log));
+}
+
+TEST(Replay, ExpectsEveryFactorThatCountsOrThatTheGoalNames) {
+  Decision decision;
+  decision.waypoints_m = {Eigen::Vector3d::Zero()};
+  decision.fitness.factors[kNavigationFactor] = 0.5;
+  goal_t logged{};
+  EXPECT_EQ(expected_goal(logged, decision, 0).factor_names, "navigation");
+  logged.factor_names = "structure";
+  const goal_t expected = expected_goal(logged, decision, 0);
+  EXPECT_EQ(expected.factor_names, "structure,navigation");
+  EXPECT_EQ(expected.factors, 2);
+  EXPECT_EQ(expected.factor_value, (std::vector<double>{0.0, 0.5}));
 }
 
 TEST(Replay, FindsAnEndThatKnowsOfNoView) {

@@ -67,8 +67,8 @@ class TwoKnownRooms : public ::testing::Test {
     const ClearSpace clear(map, parameters);
     ShortestPaths paths;
     paths.find(clear, map, present.position_m, 0.3);
-    ViewEvaluator evaluator(space, predictor, {}, present);
-    ViewEvaluator coarse(space, coarse_predictor, {}, present);
+    ViewEvaluator evaluator(space, predictor, {}, present, paths);
+    ViewEvaluator coarse(space, coarse_predictor, {}, present, paths);
     return last_look.best_view({space, present, 1, 20, 1, refused}, paths, coarse, evaluator);
   }
 
@@ -77,7 +77,7 @@ class TwoKnownRooms : public ::testing::Test {
     const ClearSpace clear(map, parameters);
     ShortestPaths paths;
     paths.find(clear, map, present.position_m, 0.3);
-    ViewEvaluator evaluator(space, predictor, {}, present);
+    ViewEvaluator evaluator(space, predictor, {}, present, paths);
     return best_fitness(paths, map.grid(), evaluator);
   }
 
@@ -208,7 +208,7 @@ PaperRun recover(const TriangleMesh& mesh, std::int64_t seed, const StopParamete
   ShortestPaths paths;
   paths.find(clear, planner.map(), pose.position_m, search.feasibility.departure_m);
   const auto predictor = make_predictor(raster());
-  ViewEvaluator evaluator(planner.space(), *predictor, {}, pose);
+  ViewEvaluator evaluator(planner.space(), *predictor, {}, pose, paths);
   run.best_fitness_left = best_fitness(paths, planner.map().grid(), evaluator);
   return run;
 }

@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "planner/view_evaluator.h"
+
 namespace nextview {
 namespace {
 
@@ -92,12 +94,60 @@ TEST_F(Hall, TheFitnessIsWhatThePredictorSaysOfTheView) {
   predictor.predict(KnownSpace(map), map.grid().voxel_of(decision.pose.position_m), counts);
   double best = 0.0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    best = std::max(best, fitness(counts[i], {}).value);
+    best = std::max(best, fitness(counts[i]).value);
   }
   EXPECT_EQ(decision.fitness.value, best);
   // Only a view that has the unseen wall in sight is better than one of nothing new.
   EXPECT_GT(decision.fitness.value, 0.5);
   EXPECT_GT(decision.fitness.share_unseen, 0.0);
+}
+
+// The present position has the path of length 0, and all others the one that would be taken.
+TEST_F(Hall, TheWayCountsByTheRealPath) {
+  parameters.weights[kNavigationFactor] = 0.1;
+  int moved = 0;
+  for (int seed = 1; seed <= 10; ++seed) {
+    const Decision decision = decide(seed);
+    std::vector<ViewCounts> counts(20);
+    const auto best_at = [&](const Vector3d& position_m, const Travel& travel) {
+      predictor.predict(KnownSpace(map), map.grid().voxel_of(position_m), counts);
+      double best = 0.0;
+      for (const ViewCounts& view : counts) {
+        best = std::max(best, fitness(view, travel, parameters.weights).value);
+      }
+      return best;
+    };
+    const Travel travel = travel_along(decision.waypoints_m);
+    EXPECT_NEAR(decision.fitness.value, best_at(decision.pose.position_m, travel), 1e-9);
+    EXPECT_EQ(decision.fitness.factors[kNavigationFactor], navigation_factor(travel));
+    EXPECT_NEAR(decision.tried[0].fitness, best_at(present.position_m, {}), 1e-9);
+    if (travel.length_m > 0.0) ++moved;
+  }
+  EXPECT_GT(moved, 0);
+}
+
+// Round a corner of 90 degrees, so that the way has both a length and a turn.
+TEST_F(Hall, AViewAloneIsWorthWhatItIsAmongAll) {
+  for (int k = 0; k < 20; ++k) {
+    for (int j = 0; j < 26; ++j) map.set_label({18, j, k}, Label::Occupied);
+  }
+  const Vector3d behind_m(3.05, 0.85, 0.75);
+  const KnownSpace space(map);
+  const ClearSpace clear(map, parameters.feasibility);
+  ShortestPaths paths;
+  paths.find(clear, map, present.position_m, 0.3);
+  FactorWeights weights = {};
+  weights[kNavigationFactor] = 1.0;
+  ViewEvaluator evaluator(space, predictor, weights, present, paths);
+  evaluator.evaluate({&behind_m, 1});
+  const BestView& best = evaluator.at(behind_m);
+  const Fitness alone = evaluator.of_view(behind_m, best.orientation);
+  EXPECT_EQ(alone.value, best.fitness.value);
+  EXPECT_EQ(alone.factors, best.fitness.factors);
+  const Travel travel = travel_along(paths.waypoints_to_m(behind_m));
+  EXPECT_GT(travel.turning, 0.0);
+  EXPECT_GT(travel.length_m, 2.0 * 2.1) << "to the end of the wall and back";
+  EXPECT_EQ(alone.factors[kNavigationFactor], navigation_factor(travel));
 }
 
 TEST_F(Hall, LimitsAreKept) {
@@ -178,7 +228,13 @@ TEST_F(Hall, ParametersThatCannotBeAreNamed) {
             "max_evaluations = 3 is not a number from 4 to 1200");
   EXPECT_EQ(message([](P& p) { p.feasibility.clearance_m = -1.0; }),
             "clearance_m = -1 is not a number from 0 to 5");
-  EXPECT_NE(message([](P& p) { p.use_quality = true; }), "accepted");
+  EXPECT_EQ(message([](P& p) { p.weights[kNavigationFactor] = 10.5; }),
+            "structure_weight or navigation_weight = 10.5 is not a number from 0 to 10");
+  EXPECT_EQ(message([](P& p) { p.weights[kNavigationFactor] = 1.0; }), "accepted");
+  for (const std::size_t factor : {kQualityFactor, kStructureFactor}) {
+    EXPECT_EQ(message([&](P& p) { p.weights[factor] = 1.0; }),
+              "a factor asks for the surfaces, which the view predictor does not count");
+  }
 }
 
 }  // namespace

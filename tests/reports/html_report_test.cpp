@@ -64,6 +64,7 @@ TEST_F(HtmlReport, HoldsWhatTheLogSays) {
   EXPECT_EQ(data["stop"]["reason"], run.log.record().stop()->stop_reason);
   EXPECT_EQ(data["settings"]["map.voxel_size_m"], run.config().map.voxel_size_m);
   EXPECT_EQ(data["settings"]["base.start_m"].size(), 3U);
+  EXPECT_TRUE(data["views"].back()["factors"].empty()) << "the surface strategy has none";
   EXPECT_EQ(data["log"]["messages"], run.log.counters().messages);
   EXPECT_TRUE(data["summary"].is_null());
   EXPECT_TRUE(data["views"][0]["surface_coverage"].is_null()) << "only the CAD model knows it";
@@ -151,7 +152,8 @@ TEST_F(HtmlReport, IsDrawnByChromium) {
   if (std::system("command -v chromium > /dev/null") != 0) {
     GTEST_SKIP() << "needs a browser to draw the page: apt-get install chromium";
   }
-  const Json data = report_data(folder_);
+  Json data = report_data(folder_);
+  data["views"].back()["factors"] = {{"structure", 0.0625}};
   const std::filesystem::path file = folder_ / "report.html";
   std::ofstream(file) << page_of({data, data});
   const std::string seen = seen_by_chromium(file, 360);
@@ -161,6 +163,9 @@ TEST_F(HtmlReport, IsDrawnByChromium) {
   EXPECT_GE(count(seen, "<svg"), 6) << "curves";
   EXPECT_EQ(count(seen, "<tr data-view="), 2 * static_cast<int>(data["views"].size()));
   EXPECT_NE(seen.find("planner.clearance_m"), std::string::npos) << "settings";
+  EXPECT_EQ(count(seen, ">f structure</th>"), 2) << "a column of each run";
+  EXPECT_EQ(count(seen, ">f quality</th>"), 0) << "it does not count";
+  EXPECT_EQ(count(seen, ">0.063</td>") + count(seen, ">0.062</td>"), 2);
 }
 
 }  // namespace

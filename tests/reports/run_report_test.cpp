@@ -80,7 +80,37 @@ TEST(Views, AreBlankWhereATimingWasLost) {
   write_views(out, run);
   const auto lines = lines_of(out.str());
   EXPECT_NE(lines[2].find(",0.75,6,9,,0.500000,"), std::string::npos) << lines[2];
-  EXPECT_TRUE(lines[2].ends_with(",,,0.003000,,,0.500000,")) << lines[2];
+  EXPECT_TRUE(lines[2].ends_with(",,,0.003000,,,0.500000,,,")) << lines[2];
+}
+
+// Quality stands where it always has; the others stand last, blank where they do not count.
+TEST(Views, HaveTheFactorsThatCount) {
+  FinishedRun run = two_views();
+  run.config.strategy = "paper";
+  for (ViewRow& row : run.rows) {
+    row.goal.factor_names = "quality,structure,navigation";
+    row.goal.factor_value = {0.25, 0.5, 0.125};
+  }
+  const auto ends_of_rows = [&run] {
+    std::ostringstream out;
+    write_views(out, run);
+    std::vector<std::string> ends;
+    for (const std::string& line : lines_of(out.str())) {
+      const std::size_t last = line.rfind(',');
+      ends.push_back(line.substr(line.rfind(',', last - 1)));
+    }
+    return ends;
+  };
+  using Ends = std::vector<std::string>;
+  EXPECT_EQ(ends_of_rows(), (Ends{",structure_factor,navigation_factor", ",,", ",,"}));
+  run.config.planner.navigation_weight = 2.0;
+  EXPECT_EQ(ends_of_rows()[2], ",,0.125000");
+  run.config.planner.structure_weight = 1.0;
+  EXPECT_EQ(ends_of_rows()[2], ",0.500000,0.125000");
+  EXPECT_EQ(ends_of_rows()[1], ",,") << "the start was not decided on";
+  std::ostringstream out;
+  write_views(out, run);
+  EXPECT_NE(lines_of(out.str())[2].find(",0.250000,,,"), std::string::npos);
 }
 
 TEST(Summary, SaysHowTheRunEnded) {
@@ -156,15 +186,16 @@ TEST(Summary, SaysWhyThereIsNoCoverage) {
   EXPECT_NE(table.str().find("unknown, because nobody looked"), std::string::npos) << table.str();
 }
 
-TEST(Views, EndOnThePrecision) {
+TEST(Views, EndOnThePrecisionAndTheFactors) {
   FinishedRun run = two_views();
   run.rows[1].surface_precision = 0.75;
   std::ostringstream out;
   write_views(out, run);
   const auto lines = lines_of(out.str());
-  EXPECT_TRUE(lines[0].ends_with(",wait_s,surface_precision")) << lines[0];
-  EXPECT_TRUE(lines[1].ends_with(",")) << lines[1];
-  EXPECT_TRUE(lines[2].ends_with(",0.750000")) << lines[2];
+  EXPECT_TRUE(lines[0].ends_with(",wait_s,surface_precision,structure_factor,navigation_factor"))
+      << lines[0];
+  EXPECT_TRUE(lines[1].ends_with(",,,")) << lines[1];
+  EXPECT_TRUE(lines[2].ends_with(",0.750000,,")) << lines[2];
 }
 
 TEST(Summary, HasThePrecisionOrSaysWhyNot) {

@@ -100,6 +100,28 @@ TEST(RunSetup, TidyingUpTakesThePapersOrientationsAndEndsByItself) {
   EXPECT_EQ(config.planner.max_views, 1000);
 }
 
+TEST(RunSetup, WeighsStructureAndNavigationInThePapersFitnessOnly) {
+  RunOptions options = boxes();
+  options.structure_weight = 2.0;
+  options.navigation_weight = 0.5;
+  const run_config_t config = prepare_run(options).config;
+  EXPECT_EQ(config.planner.structure_weight, 2.0);
+  EXPECT_EQ(config.planner.navigation_weight, 0.5);
+  options.strategy = "surface";
+  for (double* weight : {&options.structure_weight, &options.navigation_weight}) {
+    *weight = 0.0;
+    try {
+      prepare_run(options);
+      FAIL() << "the other weight was ignored";
+    } catch (const SetupError& error) {
+      const std::string text = error.what();
+      EXPECT_NE(text.find("--structure-weight and --navigation-weight"), std::string::npos) << text;
+      EXPECT_NE(text.find("--strategy paper"), std::string::npos) << text;
+    }
+    *weight = 1.0;
+  }
+}
+
 TEST(RunSetup, TheCommandLineWinsOverTheScene) {
   RunOptions options = boxes();
   options.start_m = {0.8, 1.1, 1.3};

@@ -119,7 +119,7 @@ std::vector<std::string> column_of_views(const std::filesystem::path& folder,
   std::ifstream file(folder / "views.csv");
   std::vector<std::vector<std::string>> rows;
   for (std::string line; std::getline(file, line);) {
-    std::istringstream cells(line);
+    std::istringstream cells(line + ',');  // the last cell may be empty
     std::vector<std::string>& row = rows.emplace_back();
     for (std::string cell; std::getline(cells, cell, ',');) row.push_back(cell);
   }

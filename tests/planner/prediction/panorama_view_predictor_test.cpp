@@ -55,8 +55,8 @@ TEST(PanoramaViewPredictor, FitnessIsThePlainOneWithinTheSamplingError) {
     const VoxelMap map = room(random);
     const KnownSpace space(map);
     PlainViewPredictor plain(paper_raster(), kVoxelSize, icosahedron_orientations(1), false);
-    PanoramaViewPredictor panorama(paper_raster(), kVoxelSize, icosahedron_orientations(1));
-    PanoramaViewPredictor by_two(paper_raster(), kVoxelSize, icosahedron_orientations(1), 2);
+    PanoramaViewPredictor panorama(paper_raster(), kVoxelSize, icosahedron_orientations(1), false);
+    PanoramaViewPredictor by_two(paper_raster(), kVoxelSize, icosahedron_orientations(1), false, 2);
     std::vector<ViewCounts> expected(80);
     std::vector<ViewCounts> counts(80);
     std::vector<ViewCounts> counts_by_two(80);
@@ -70,7 +70,7 @@ TEST(PanoramaViewPredictor, FitnessIsThePlainOneWithinTheSamplingError) {
     for (std::size_t i = 0; i < counts.size(); ++i) {
       EXPECT_EQ(counts[i].occupied + counts[i].occlusion_plane + counts[i].unseen + counts[i].open,
                 64 * 30);
-      const double error = std::abs(fitness(counts[i], {}).value - fitness(expected[i], {}).value);
+      const double error = std::abs(fitness(counts[i]).value - fitness(expected[i]).value);
       sum += error;
       largest = std::max(largest, error);
       ++views;
@@ -82,6 +82,52 @@ TEST(PanoramaViewPredictor, FitnessIsThePlainOneWithinTheSamplingError) {
   std::printf("fitness differs by %.4f on average, %.4f at most\n", sum / views, largest);
 }
 
+// With the rays it says it has the plain predictor counts the same, surfaces and all.
+TEST(PanoramaViewPredictor, CountsWhatThePlainOneCountsWithTheSameRays) {
+  std::mt19937 random(7);
+  const std::vector<Orientation> orientations = icosahedron_orientations(1);
+  ViewCounts sum;
+  for (int round = 0; round < 12; ++round) {
+    VoxelMap map = room(random);
+    for_each_voxel(map.window(), [&](const VoxelIndex& voxel) {
+      if (map.label(voxel) != Label::Occupied || random() % 8 == 0) return;
+      const auto element = [&] { return static_cast<int>(random() % 40000) - 20000; };
+      map.surface_at(voxel).normal_sum = {element(), element(), element()};
+      map.surface_at(voxel).quality = static_cast<std::uint16_t>(random());
+    });
+    const KnownSpace space(map, KnownSpace::Surfaces::Keep);
+    const PredictionRaster raster = paper_raster(round % 3 == 0 ? 1.5 : 30.0);
+    PanoramaViewPredictor panorama(raster, kVoxelSize, orientations, true, 1 + round % 3);
+    PlainViewPredictor plain(raster, kVoxelSize, orientations, true, panorama.rays());
+    std::vector<ViewCounts> counts(orientations.size());
+    std::vector<ViewCounts> expected(orientations.size());
+    for (int place = 0; place < 3; ++place) {
+      const VoxelIndex sensor(static_cast<int>(random() % 52), static_cast<int>(random() % 44),
+                              static_cast<int>(random() % 31));
+      plain.predict(space, sensor, expected);
+      panorama.predict(space, sensor, counts);
+      ASSERT_EQ(counts, expected) << "round " << round << " from " << sensor.transpose();
+    }
+    for (const ViewCounts& view : counts) {
+      sum.occupied += view.occupied;
+      sum.open += view.open;
+      sum.improved_voxels += view.improved_voxels;
+      sum.normals.xx += view.normals.xx;
+    }
+  }
+  EXPECT_GT(sum.occupied, 50'000);
+  EXPECT_GT(sum.open, 50'000);
+  EXPECT_GT(sum.improved_voxels, 1000);
+  EXPECT_GT(sum.normals.xx, 0);
+}
+
+TEST(PanoramaViewPredictor, AsksForSurfacesWhenItCountsThem) {
+  const VoxelMap map({kVoxelSize, Eigen::Vector3d::Zero()}, {VoxelIndex::Zero(), {8, 8, 8}});
+  PanoramaViewPredictor panorama(paper_raster(), kVoxelSize, icosahedron_orientations(), true);
+  std::vector<ViewCounts> counts(20);
+  EXPECT_THROW(panorama.predict(KnownSpace(map), VoxelIndex(1, 1, 1), counts), std::logic_error);
+}
+
 TEST(PanoramaViewPredictor, ManyDirectionsContainTheFew) {
   // The same orientation has the same counts, whatever others are asked for with it.
   std::mt19937 random(6);
@@ -90,8 +136,8 @@ TEST(PanoramaViewPredictor, ManyDirectionsContainTheFew) {
   const std::vector<Orientation> few = icosahedron_orientations();
   std::vector<Orientation> many = icosahedron_orientations(3);
   many.insert(many.end(), few.begin(), few.end());
-  PanoramaViewPredictor predict_few(paper_raster(), kVoxelSize, few);
-  PanoramaViewPredictor predict_many(paper_raster(), kVoxelSize, many);
+  PanoramaViewPredictor predict_few(paper_raster(), kVoxelSize, few, false);
+  PanoramaViewPredictor predict_many(paper_raster(), kVoxelSize, many, false);
   std::vector<ViewCounts> counts_few(few.size());
   std::vector<ViewCounts> counts_many(many.size());
   predict_few.predict(space, VoxelIndex(20, 20, 15), counts_few);
@@ -107,10 +153,10 @@ TEST(PanoramaViewPredictor, RaysEndAtTheSensorsRange) {
   }
   const KnownSpace space(map);
   std::vector<ViewCounts> counts(20);
-  PanoramaViewPredictor near(paper_raster(2.0), kVoxelSize, icosahedron_orientations());
+  PanoramaViewPredictor near(paper_raster(2.0), kVoxelSize, icosahedron_orientations(), false);
   near.predict(space, VoxelIndex(30, 30, 30), counts);
   for (const ViewCounts& view : counts) EXPECT_EQ(view.open, 64 * 30);
-  PanoramaViewPredictor far(paper_raster(30.0), kVoxelSize, icosahedron_orientations());
+  PanoramaViewPredictor far(paper_raster(30.0), kVoxelSize, icosahedron_orientations(), false);
   far.predict(space, VoxelIndex(30, 30, 30), counts);
   EXPECT_TRUE(std::any_of(counts.begin(), counts.end(),
                           [](const ViewCounts& view) { return view.occupied > 1000; }));

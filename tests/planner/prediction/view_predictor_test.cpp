@@ -58,7 +58,7 @@ TEST_F(SmallWorld, CountsWhatEachRayMeetsFirst) {
   map.set_label({3, 1, 2}, Label::Unmarked);
   const ViewCounts counts = predict(30.0, looking({0.0}))[0];
   EXPECT_EQ(counts, (ViewCounts{1, 1, 1, 0, 0, 0, 0}));
-  const Fitness f = fitness(counts, {});
+  const Fitness f = fitness(counts);
   EXPECT_NEAR(f.share_occupied, 1.0 / 3.0, 1e-12);
   EXPECT_NEAR(f.value, 5.0 / 27.0 - 10.5 / 9.0 + 2.0, 1e-12);
 }
@@ -101,8 +101,27 @@ TEST_F(SmallWorld, CountsTheVoxelsThatWouldImprove) {
   map.surface_at({0, 2, 2}) = {{0, -one, 0}, 1, 46342};
   map.set_label({4, 2, 2}, Label::Occupied);
   const ViewCounts counts = predict(30.0, looking({0.0}), true)[0];
-  EXPECT_EQ(counts, (ViewCounts{3, 0, 0, 0, 3, 1, 65535 - 13107}));
+  const NormalScatter two_ahead{.yy = 2 * one * one};
+  EXPECT_EQ(counts, (ViewCounts{3, 0, 0, 0, 3, 1, 65535 - 13107, two_ahead}));
   EXPECT_EQ(predict(30.0, looking({0.0}), false)[0], (ViewCounts{3, 0, 0, 0, 0, 0, 0}));
+}
+
+// The left voxel's normal is (1, -1, 0) / sqrt 2, the one ahead's (0, -0.6, 0.8).
+TEST_F(SmallWorld, SumsTheNormalsOfTheVoxelsItMeets) {
+  map.set_label({2, 2, 2}, Label::Occupied);
+  map.surface_at({2, 2, 2}).normal_sum = {0, -600, 800};
+  map.set_label({0, 2, 2}, Label::Occupied);
+  map.surface_at({0, 2, 2}).normal_sum = {70, -70, 0};
+  const NormalScatter normals = predict(30.0, looking({0.0}), true)[0].normals;
+  const auto near = [](std::int64_t sum, double expected) {
+    EXPECT_NEAR(static_cast<double>(sum) / (1 << 28), expected, 1e-4);
+  };
+  near(normals.xx, 0.5);
+  near(normals.yy, 0.5 + 0.36);
+  near(normals.zz, 0.64);
+  near(normals.xy, -0.5);
+  near(normals.xz, 0.0);
+  near(normals.yz, -0.48);
 }
 
 TEST_F(SmallWorld, AVoxelMetByManyRaysCountsOnceWithItsBestRay) {
@@ -113,7 +132,8 @@ TEST_F(SmallWorld, AVoxelMetByManyRaysCountsOnceWithItsBestRay) {
   PlainViewPredictor predictor({narrow, 2.0}, 1.0, looking({0.0}), true);
   ViewCounts counts;
   predictor.predict(KnownSpace(map), sensor, {&counts, 1});
-  EXPECT_EQ(counts, (ViewCounts{3, 0, 0, 0, 1, 1, 65535 - 60000}));
+  const NormalScatter one_ahead{.yy = 1 << 28};
+  EXPECT_EQ(counts, (ViewCounts{3, 0, 0, 0, 1, 1, 65535 - 60000, one_ahead}));
 }
 
 TEST_F(SmallWorld, RefusesWhatItWasNotMadeFor) {
@@ -125,6 +145,9 @@ TEST_F(SmallWorld, RefusesWhatItWasNotMadeFor) {
   const VoxelMap finer({0.5, Eigen::Vector3d::Zero()}, map.window());
   EXPECT_THROW(predictor.predict(KnownSpace(finer), sensor, counts), std::invalid_argument);
   EXPECT_THROW(PlainViewPredictor({three_rays(), 2.0}, 1.0, {}, false), std::invalid_argument);
+  const std::vector<Eigen::Vector3d> two_rays(2, Eigen::Vector3d::UnitY());
+  EXPECT_THROW(PlainViewPredictor({three_rays(), 2.0}, 1.0, looking({0.0}), false, two_rays),
+               std::invalid_argument);
   EXPECT_THROW(PlainViewPredictor({three_rays(), 0.0}, 1.0, looking({0.0}), false),
                std::invalid_argument);
 }
