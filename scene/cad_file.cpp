@@ -17,6 +17,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "lcmtypes/parameter_bounds.h"
 #include "scene/vertex_shift.h"
 
 namespace nextview {
@@ -85,7 +86,7 @@ Eigen::Matrix4d world_from_root(const aiScene& scene, const std::string& reader,
 
 // Up to here floats, which is what Debian's assimp makes of every coordinate, tell millimetres
 // apart.
-constexpr double kFarthest_m = 8192.0;
+constexpr double kFarthest_m = bounds::kWorkspace.most;
 
 void add_mesh(const aiMesh& mesh, const Eigen::Matrix4d& world_from_mesh,
               const std::filesystem::path& file, Shapes& shapes) {
