@@ -220,6 +220,20 @@ TEST(IncludeArrows, WriteNumbersByLibfmt) {
   }
 }
 
+/// The program that holds the versions for each instruction set against each other is compiled
+/// from a list of its own.
+TEST(IncludeArrows, KnowEverySourceWithVectorClones) {
+  static const std::regex kClones(R"((^|\n)NEXTVIEW_VECTOR_CLONES\b)");
+  std::set<std::string> cloned;
+  for (const Source& source : sources()) {
+    if (std::regex_search(text_of(source.file), kClones)) cloned.insert(source.file.string());
+  }
+  std::set<std::string> listed;
+  std::istringstream list(NEXTVIEW_CLONED_SOURCES);
+  for (std::string file; list >> file;) listed.insert(file);
+  EXPECT_EQ(listed, cloned);
+}
+
 TEST(IncludeArrows, LeaveClocksAndGeneratorsOutOfLibraries) {
   static const std::regex kForbidden(
       R"(std::(random_device|rand\b|time\b|(uniform|normal)_\w+_distribution)|_clock::now|\brand\(\))");
