@@ -16,8 +16,6 @@ namespace {
 
 // A position sent over the bus is the same number again; this only forgives its being computed.
 constexpr double kSamePlace_m = 1e-6;
-// 1e-9 rad forgives a tilt of 90 degrees that was rounded up.
-constexpr double kMaxTilt_rad = std::numbers::pi / 2.0 + 1e-9;
 // Less than a broom cupboard: nothing a robot could leave.
 constexpr double kSmallestRoom_m3 = 2.0;
 
@@ -58,7 +56,8 @@ std::string bad_angles(const SensorPose& pose) {
   if (!std::isfinite(pose.pan_rad) || !std::isfinite(pose.tilt_rad)) {
     return "pan or tilt is not finite";
   }
-  if (const double by = std::abs(pose.tilt_rad) - kMaxTilt_rad; by > 0.0) {
+  if (!bounds::kPan.contain(pose.pan_rad)) return bounds::kPan.refusal(pose.pan_rad);
+  if (const double by = std::abs(pose.tilt_rad) - bounds::kTilt.most; by > 0.0) {
     return "a tilt of " + metres(pose.tilt_rad * 180.0 / std::numbers::pi) + " degrees is " +
            metres(by * 180.0 / std::numbers::pi) + " degrees beyond +-90";
   }
@@ -88,14 +87,15 @@ std::string collision(const Scene& scene, double body_radius_m, const Eigen::Vec
 }
 
 void check(const BaseLimits& limits) {
-  if (!limits.workspace_min_m.allFinite() || !limits.workspace_max_m.allFinite() ||
-      (limits.workspace_min_m.array() >= limits.workspace_max_m.array()).any()) {
-    throw std::invalid_argument("the workspace must be finite and its minimum below its maximum");
+  for (int axis = 0; axis < 3; ++axis) {
+    bounds::kWorkspace.require(limits.workspace_min_m[axis]);
+    bounds::kWorkspace.require(limits.workspace_max_m[axis]);
+    require_below("workspace_min_m", limits.workspace_min_m[axis], "workspace_max_m",
+                  limits.workspace_max_m[axis]);
   }
-  if (!std::isfinite(limits.lift_min_m) || !std::isfinite(limits.lift_max_m) ||
-      limits.lift_min_m >= limits.lift_max_m) {
-    throw std::invalid_argument("the lift's lowest height must be below its highest");
-  }
+  bounds::kLift.require(limits.lift_min_m);
+  bounds::kLift.require(limits.lift_max_m);
+  require_below("lift_min_m", limits.lift_min_m, "lift_max_m", limits.lift_max_m);
   bounds::kBaseSpeed.require(limits.base_speed_m_s);
   bounds::kLiftSpeed.require(limits.lift_speed_m_s);
   bounds::kTurnSpeed.require(limits.turn_speed_rad_s);

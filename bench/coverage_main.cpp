@@ -3,10 +3,10 @@
 // nextview_bench_coverage SCENE [SHARE]: boxes, columns, hospital, or a model in ../shared/scenes;
 // of its samples a share, 1 by default.
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 
 #include <chrono>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 #include <ctime>
@@ -65,18 +65,16 @@ void measure(const std::string& name, double share) {
       std::chrono::duration<double>(std::chrono::steady_clock::now() - started).count();
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  std::printf(
-      "%s: %.1f m2, %.0f m2 visible; %zu triangles, %lld positions, %lld samples (%.0f/m2), %.4f "
-      "visible\n"
-      "  %.2f s of CPU for positions, %.2f s for all, %.2f s by the clock, peak %.0f MB, checksum "
-      "%016llx\n",
-      name.c_str(), scene.scene.mesh().area_m2(), surface.area_m2(),
-      scene.scene.mesh().triangles.size(), static_cast<long long>(surface.positions),
-      static_cast<long long>(surface.samples), surface.samples_per_m2,
+  fmt::print(
+      "{}: {:.1f} m2, {:.0f} m2 visible; {} triangles, {} positions, {} samples ({:.0f}/m2), "
+      "{:.4f} visible\n"
+      "  {:.2f} s of CPU for positions, {:.2f} s for all, {:.2f} s by the clock, peak {:.0f} MB, "
+      "checksum {:016x}\n",
+      name, scene.scene.mesh().area_m2(), surface.area_m2(), scene.scene.mesh().triangles.size(),
+      surface.positions, surface.samples, surface.samples_per_m2,
       static_cast<double>(surface.points_m.size()) / static_cast<double>(surface.samples),
       reached_s - before_s, cpu_s() - reached_s, wall_s,
-      static_cast<double>(usage.ru_maxrss) / 1024.0,
-      static_cast<unsigned long long>(checksum(surface)));
+      static_cast<double>(usage.ru_maxrss) / 1024.0, checksum(surface));
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 // options of
 // ./run, and decides, moves and scans as one does.
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <charconv>
 #include <cstdio>
@@ -92,8 +94,8 @@ Figures run(const run_config_t& config, const World& world) {
     note(figures.coverage_99, figures.coverage, 0.99);
     note(figures.quality_90, figures.quality, 0.90);
     if (view % 50 == 0) {
-      std::fprintf(stderr, "  view %d, %.1f m, coverage %.4f\n", view, figures.end.path_m,
-                   figures.coverage);
+      fmt::print(stderr, "  view {}, {:.1f} m, coverage {:.4f}\n", view, figures.end.path_m,
+                 figures.coverage);
     }
     for (const NextView* next = decide();; next = decide()) {
       if (const Ending* ending = std::get_if<Ending>(next)) {
@@ -108,7 +110,7 @@ Figures run(const run_config_t& config, const World& world) {
         break;
       }
       ++figures.refused;
-      std::fprintf(stderr, "  view %d refused: %s\n", view + 1, motion.refusal.c_str());
+      fmt::print(stderr, "  view {} refused: {}\n", view + 1, motion.refusal);
       if (planner->attempt() >= config.planner.max_attempts) {
         figures.ending = "too many attempts were refused";
         figures.digest = planner->builder().digest();
@@ -121,24 +123,22 @@ Figures run(const run_config_t& config, const World& world) {
 
 std::string in_words(const MayBeReached& reached) {
   if (!reached) return "     never      ";
-  char text[32];
-  std::snprintf(text, sizeof text, "%6d %7.1f  ", reached->views, reached->path_m);
-  return text;
+  return fmt::format("{:6} {:7.1f}  ", reached->views, reached->path_m);
 }
 
 void print_heading() {
-  std::printf("%5s %16s%16s%16s%16s%16s %8s %8s %7s %7s %7s\n", "seed", "90 %: views, m", "95 %",
-              "99 %", "quality 0.9", "end", "coverage", "quality", "refused", "ms", "worst");
+  fmt::print("{:>5} {:>16}{:>16}{:>16}{:>16}{:>16} {:>8} {:>8} {:>7} {:>7} {:>7}\n", "seed",
+             "90 %: views, m", "95 %", "99 %", "quality 0.9", "end", "coverage", "quality",
+             "refused", "ms", "worst");
 }
 
 void print(std::int64_t seed, const Figures& figures) {
   const double worst = *std::max_element(figures.decision_ms.begin(), figures.decision_ms.end());
-  std::printf("%5lld %s%s%s%s%s %8.4f %8.4f %7d %7.1f %7.1f  %s  %s\n",
-              static_cast<long long>(seed), in_words(figures.coverage_90).c_str(),
-              in_words(figures.coverage_95).c_str(), in_words(figures.coverage_99).c_str(),
-              in_words(figures.quality_90).c_str(), in_words(figures.end).c_str(), figures.coverage,
-              figures.quality, figures.refused, median(figures.decision_ms), worst,
-              figures.digest.c_str(), figures.ending.c_str());
+  fmt::print("{:5} {}{}{}{}{} {:8.4f} {:8.4f} {:7} {:7.1f} {:7.1f}  {}  {}\n", seed,
+             in_words(figures.coverage_90), in_words(figures.coverage_95),
+             in_words(figures.coverage_99), in_words(figures.quality_90), in_words(figures.end),
+             figures.coverage, figures.quality, figures.refused, median(figures.decision_ms), worst,
+             figures.digest, figures.ending);
   std::fflush(stdout);
 }
 
@@ -154,13 +154,8 @@ std::string mean_in_words(const std::vector<Figures>& runs, MayBeReached Figures
     missed += run.*reached ? 0 : 1;
   }
   const auto count = static_cast<double>(runs.size());
-  char text[32];
-  if (missed == 0) {
-    std::snprintf(text, sizeof text, "%6.2f %7.2f  ", views / count, path_m / count);
-  } else {
-    std::snprintf(text, sizeof text, "%4d x never    ", missed);
-  }
-  return text;
+  return missed == 0 ? fmt::format("{:6.2f} {:7.2f}  ", views / count, path_m / count)
+                     : fmt::format("{:4} x never    ", missed);
 }
 
 void print_mean(const std::vector<Figures>& runs) {
@@ -175,18 +170,15 @@ void print_mean(const std::vector<Figures>& runs) {
     decision_ms.insert(decision_ms.end(), run.decision_ms.begin(), run.decision_ms.end());
     refused += run.refused;
   }
-  char end[32];
-  std::snprintf(end, sizeof end, "%6.2f %7.2f  ",
-                mean([](const Figures& f) { return f.end.views; }),
-                mean([](const Figures& f) { return f.end.path_m; }));
-  std::printf(" mean %s%s%s%s%s %8.4f %8.4f %7d %7.1f %7.1f\n",
-              mean_in_words(runs, &Figures::coverage_90).c_str(),
-              mean_in_words(runs, &Figures::coverage_95).c_str(),
-              mean_in_words(runs, &Figures::coverage_99).c_str(),
-              mean_in_words(runs, &Figures::quality_90).c_str(), end,
-              mean([](const Figures& f) { return f.coverage; }),
-              mean([](const Figures& f) { return f.quality; }), refused, median(decision_ms),
-              *std::max_element(decision_ms.begin(), decision_ms.end()));
+  const std::string end =
+      fmt::format("{:6.2f} {:7.2f}  ", mean([](const Figures& f) { return f.end.views; }),
+                  mean([](const Figures& f) { return f.end.path_m; }));
+  fmt::print(" mean {}{}{}{}{} {:8.4f} {:8.4f} {:7} {:7.1f} {:7.1f}\n",
+             mean_in_words(runs, &Figures::coverage_90), mean_in_words(runs, &Figures::coverage_95),
+             mean_in_words(runs, &Figures::coverage_99), mean_in_words(runs, &Figures::quality_90),
+             end, mean([](const Figures& f) { return f.coverage; }),
+             mean([](const Figures& f) { return f.quality; }), refused, median(decision_ms),
+             *std::max_element(decision_ms.begin(), decision_ms.end()));
 }
 
 void run_all(std::int64_t first_seed, std::int64_t last_seed, const RunOptions& options) {
@@ -196,7 +188,7 @@ void run_all(std::int64_t first_seed, std::int64_t last_seed, const RunOptions& 
       cache_folder(options.cache), *setup.scene, std::string(setup.config.scene_digest),
       start_pose_of(setup.config).position_m, visibility_of(setup.config));
   const RayTable rays = make_ray_table(sensor_of(setup.config));
-  std::printf("%s, %.1f m2 can be seen\n", setup.config.scene_name.c_str(), visible.area_m2());
+  fmt::print("{}, {:.1f} m2 can be seen\n", setup.config.scene_name, visible.area_m2());
   print_heading();
   std::vector<Figures> runs;
   for (std::int64_t seed = first_seed; seed <= last_seed; ++seed) {

@@ -1,20 +1,14 @@
 #include "exporter/trajectory.h"
 
+#include <fmt/ostream.h>
+
 #include <cmath>
-#include <cstdio>
 #include <numbers>
 
 namespace nextview {
 namespace {
 
 constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
-
-template <class... Values>
-void print(std::ostream& out, const char* pattern, Values... values) {
-  char text[512];
-  std::snprintf(text, sizeof text, pattern, values...);
-  out << text;
-}
 
 }  // namespace
 
@@ -31,9 +25,9 @@ void write_poses_csv(std::ostream& out, std::span<const StampedPose> poses) {
     const double pan_deg = std::atan2(r(1, 0), r(0, 0)) * kDegreesPerRad;
     const double tilt_deg = std::atan2(r(2, 1), r(2, 2)) * kDegreesPerRad;
     const Eigen::Quaterniond q = quaternion_of(pose);
-    print(out, "%d,%.6f,%.6f,%.6f,%.6f,%.6f,%.6f,%.9f,%.9f,%.9f,%.9f\n", pose.view, pose.time_s,
-          pose.position_m.x(), pose.position_m.y(), pose.position_m.z(), pan_deg, tilt_deg, q.x(),
-          q.y(), q.z(), q.w());
+    fmt::print(out, "{},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.9f}\n",
+               pose.view, pose.time_s, pose.position_m.x(), pose.position_m.y(),
+               pose.position_m.z(), pan_deg, tilt_deg, q.x(), q.y(), q.z(), q.w());
   }
 }
 
@@ -42,8 +36,9 @@ void write_poses_tum(std::ostream& out, std::span<const StampedPose> poses) {
          "# timestamp tx ty tz qx qy qz qw\n";
   for (const StampedPose& pose : poses) {
     const Eigen::Quaterniond q = quaternion_of(pose);
-    print(out, "%.6f %.6f %.6f %.6f %.9f %.9f %.9f %.9f\n", pose.time_s, pose.position_m.x(),
-          pose.position_m.y(), pose.position_m.z(), q.x(), q.y(), q.z(), q.w());
+    fmt::print(out, "{:.6f} {:.6f} {:.6f} {:.6f} {:.9f} {:.9f} {:.9f} {:.9f}\n", pose.time_s,
+               pose.position_m.x(), pose.position_m.y(), pose.position_m.z(), q.x(), q.y(), q.z(),
+               q.w());
   }
 }
 

@@ -1,9 +1,10 @@
 #include "lcmtypes/validate.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
-#include <numbers>
 
 #include "lcmtypes/validate_checks.h"
 #include "sensor/range_image_check.h"
@@ -11,24 +12,20 @@
 namespace nextview {
 namespace {
 
-constexpr double kHalfTurn = std::numbers::pi;
-constexpr double kQuarterTurn = std::numbers::pi / 2.0;
-
 template <class Message>
 Checks check_key(const Message& message) {
   Checks checks;
   checks.not_negative("utime", static_cast<double>(message.utime));
   if constexpr (requires { message.view; }) {
-    checks.require(message.view >= 1, "view " + std::to_string(message.view));
-    checks.require(message.attempt >= 1, "attempt " + std::to_string(message.attempt));
+    checks.require(message.view >= 1, fmt::format("view {}", message.view));
+    checks.require(message.attempt >= 1, fmt::format("attempt {}", message.attempt));
   }
   return checks;
 }
 
 void check_angles(Checks& checks, double pan_rad, double tilt_rad) {
-  checks.within("pan_rad", pan_rad, -2.0 * kHalfTurn, 2.0 * kHalfTurn);
-  checks.within("tilt_rad", tilt_rad, -kQuarterTurn - kUnitTolerance,
-                kQuarterTurn + kUnitTolerance);
+  checks.within(bounds::kPan, pan_rad);
+  checks.within(bounds::kTilt, tilt_rad);
 }
 
 Eigen::Matrix3d matrix_of(const double (&m)[3][3]) {
@@ -47,15 +44,13 @@ void check_part(Checks& checks, const range_image_t& image) {
   const std::int64_t entry_end = std::int64_t{image.first_entry} + image.entries;
   const std::int64_t pixel_end = std::int64_t{image.first_pixel} + image.pixels;
   checks.require(image.parts >= 1 && image.parts <= all_entries + all_pixels,
-                 "parts " + std::to_string(image.parts));
+                 fmt::format("parts {}", image.parts));
   checks.require(image.part >= 0 && image.part < image.parts,
-                 "part " + std::to_string(image.part) + " of " + std::to_string(image.parts));
+                 fmt::format("part {} of {}", image.part, image.parts));
   checks.require(image.entries >= 0 && image.first_entry >= 0 && entry_end <= all_entries,
-                 "entries " + std::to_string(image.first_entry) + " to " +
-                     std::to_string(entry_end) + " of " + std::to_string(all_entries));
+                 fmt::format("entries {} to {} of {}", image.first_entry, entry_end, all_entries));
   checks.require(image.pixels >= 0 && image.first_pixel >= 0 && pixel_end <= all_pixels,
-                 "pixels " + std::to_string(image.first_pixel) + " to " +
-                     std::to_string(pixel_end) + " of " + std::to_string(all_pixels));
+                 fmt::format("pixels {} to {} of {}", image.first_pixel, pixel_end, all_pixels));
   checks.require(image.entries + std::int64_t{image.pixels} >= 1, "an empty part");
   // One slice: pixels follow the last entry, and where there are none of either the slice says so.
   checks.require(image.pixels > 0 ? entry_end == all_entries : image.first_pixel == 0,
@@ -73,9 +68,8 @@ void check_part(Checks& checks, const range_image_t& image) {
 void check_names(Checks& checks, std::string_view field, std::string_view list,
                  std::size_t values) {
   const std::vector<std::string_view> names = names_of(list);
-  checks.require(names.size() == values, std::string(field) + " has " +
-                                             std::to_string(names.size()) + " names for " +
-                                             std::to_string(values) + " values");
+  checks.require(names.size() == values,
+                 fmt::format("{} has {} names for {} values", field, names.size(), values));
   for (const std::string_view name : names) {
     checks.require(
         !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") ==
@@ -158,7 +152,7 @@ std::string check(const arrival_t& arrival) {
 std::string check(const range_image_t& image) {
   Checks checks = check_key(image);
   checks.require(image.geometry >= 0 && image.geometry < kSensorKinds,
-                 "geometry " + std::to_string(image.geometry));
+                 fmt::format("geometry {}", image.geometry));
   check_part(checks, image);
   checks.require(on_unit_circle(image.entry_sin, image.entry_cos),
                  "sine and cosine of a column or row do not belong together");
@@ -182,7 +176,7 @@ std::string check(const commit_t& commit) {
        {commit.unmarked_voxels, commit.occluded_voxels, commit.occlusion_plane_voxels,
         commit.empty_voxels, commit.occupied_voxels, commit.newly_occupied_voxels, commit.points,
         commit.points_outside, commit.no_returns, commit.invalid}) {
-    checks.require(count >= 0, "count " + std::to_string(count));
+    checks.require(count >= 0, fmt::format("count {}", count));
   }
   checks.require(commit.newly_occupied_voxels <= commit.occupied_voxels,
                  "more voxels newly Occupied than Occupied");
@@ -207,7 +201,7 @@ std::string check(const status_t& status) {
   Checks checks = check_key(status);
   for (const std::int64_t count :
        {status.lost, status.repeated, status.foreign, status.refused, status.peak_memory_bytes}) {
-    checks.require(count >= 0, "count " + std::to_string(count));
+    checks.require(count >= 0, fmt::format("count {}", count));
   }
   checks.within("failed", status.failed, 0, 1);
   checks.require(!status.role.empty(), "no role");
@@ -218,8 +212,8 @@ std::string check(const status_t& status) {
 std::string check(const request_t& request) {
   Checks checks;
   checks.not_negative("utime", static_cast<double>(request.utime));
-  checks.require(request.view >= 0, "view " + std::to_string(request.view));
-  checks.require(request.attempt >= 0, "attempt " + std::to_string(request.attempt));
+  checks.require(request.view >= 0, fmt::format("view {}", request.view));
+  checks.require(request.attempt >= 0, fmt::format("attempt {}", request.attempt));
   bool known = false;
   for_each_channel(
       [&]<class Message>() { known |= request.wanted_channel == Channel<Message>::name; });
@@ -231,8 +225,8 @@ std::string check(const request_t& request) {
 std::string check(const timing_t& timing) {
   Checks checks;
   checks.not_negative("utime", static_cast<double>(timing.utime));
-  checks.require(timing.view >= 1, "view " + std::to_string(timing.view));
-  checks.require(timing.attempt >= 0, "attempt " + std::to_string(timing.attempt));
+  checks.require(timing.view >= 1, fmt::format("view {}", timing.view));
+  checks.require(timing.attempt >= 0, fmt::format("attempt {}", timing.attempt));
   for (const double duration_s : timing.duration_s) checks.not_negative("duration_s", duration_s);
   checks.require(!timing.role.empty(), "no role");
   check_names(checks, "duration_names", timing.duration_names, timing.duration_s.size());

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <span>
 #include <string>
@@ -31,6 +33,9 @@ class Checks {
   void within(const Bounds& bounds, std::span<const double> values) {
     for (const double value : values) within(bounds, value);
   }
+  void below(std::string_view low_name, double low, std::string_view high_name, double high) {
+    require(low < high, refusal_unless_below(low_name, low, high_name, high));
+  }
   void not_negative(std::string_view name, double value) {
     if (!(value >= 0.0 && std::isfinite(value))) fail(name, value, "negative or not finite");
   }
@@ -40,13 +45,13 @@ class Checks {
   void digest(std::string_view name, std::string_view text) {
     const bool right =
         text.size() == 32 && text.find_first_not_of("0123456789abcdef") == std::string_view::npos;
-    require(right, std::string(name) + " is not 32 hexadecimal digits");
+    require(right, fmt::format("{} is not 32 hexadecimal digits", name));
   }
   std::string reason() const { return reason_; }
 
  private:
   void fail(std::string_view name, double value, std::string_view fault) {
-    require(false, std::string(name) + " = " + std::to_string(value) + ": " + std::string(fault));
+    require(false, fmt::format("{} = {:g}: {}", name, value, fault));
   }
   std::string reason_;
 };

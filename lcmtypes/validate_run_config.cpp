@@ -1,6 +1,8 @@
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <cstdint>
-#include <numbers>
 #include <stdexcept>
 #include <string>
 
@@ -13,7 +15,7 @@ namespace nextview {
 namespace {
 
 void check_scene(Checks& checks, const run_config_t& config) {
-  checks.not_negative("unit_m", config.scene.unit_m);  // 0: as the file says
+  if (config.scene.unit_m != 0.0) checks.within(bounds::kUnit, config.scene.unit_m);
   checks.within(bounds::kPosition, config.scene.origin_in_file_m);
   checks.within("has_scene", config.has_scene, 0, 1);
   if (config.has_scene == 0) {
@@ -42,34 +44,33 @@ void check_geometry(Checks& checks, const sensor_config_t& sensor) {
 
 void check_sensor(Checks& checks, const sensor_config_t& sensor) {
   checks.require(sensor.geometry >= 0 && sensor.geometry < kSensorKinds,
-                 "geometry " + std::to_string(sensor.geometry) +
-                     " is not 0, 1 or 2: tilted line scan, spherical, line striper");
+                 fmt::format("geometry {} is not 0, 1 or 2: tilted line scan, spherical, line "
+                             "striper",
+                             sensor.geometry));
   checks.within(bounds::kColumns, sensor.columns);
   checks.within(bounds::kRows, sensor.rows);
   if (checks.reason().empty()) check_geometry(checks, sensor);
   checks.within(bounds::kRangeMin, sensor.range_min_m);
   checks.within(bounds::kRangeMax, sensor.range_max_m);
-  checks.require(sensor.range_min_m < sensor.range_max_m, "range_min_m is not below range_max_m");
+  checks.below("range_min_m", sensor.range_min_m, "range_max_m", sensor.range_max_m);
   checks.within(bounds::kRangeNoise, sensor.range_noise_m);
   checks.within(bounds::kScanDuration, sensor.scan_duration_s);
 }
 
 void check_base(Checks& checks, const base_config_t& base) {
   checks.within(bounds::kPosition, base.start_m);
-  checks.within("start_pan_rad", base.start_pan_rad, -2.0 * std::numbers::pi,
-                2.0 * std::numbers::pi);
-  checks.within("start_tilt_rad", base.start_tilt_rad, -std::numbers::pi / 2.0,
-                std::numbers::pi / 2.0);
+  checks.within(bounds::kPan.as("start_pan_rad"), base.start_pan_rad);
+  checks.within(bounds::kTilt.as("start_tilt_rad"), base.start_tilt_rad);
   checks.within(bounds::kBodyRadius, base.body_radius_m);
-  checks.within(bounds::kPosition, base.workspace_min_m);
-  checks.within(bounds::kPosition, base.workspace_max_m);
+  checks.within(bounds::kWorkspace, base.workspace_min_m);
+  checks.within(bounds::kWorkspace, base.workspace_max_m);
   for (int axis = 0; axis < 3; ++axis) {
-    checks.require(base.workspace_min_m[axis] < base.workspace_max_m[axis],
-                   "workspace_min_m is not below workspace_max_m");
+    checks.below("workspace_min_m", base.workspace_min_m[axis], "workspace_max_m",
+                 base.workspace_max_m[axis]);
   }
   checks.within(bounds::kLift, base.lift_min_m);
   checks.within(bounds::kLift, base.lift_max_m);
-  checks.require(base.lift_min_m < base.lift_max_m, "lift_min_m is not below lift_max_m");
+  checks.below("lift_min_m", base.lift_min_m, "lift_max_m", base.lift_max_m);
   checks.within(bounds::kBaseSpeed, base.base_speed_m_s);
   checks.within(bounds::kLiftSpeed, base.lift_speed_m_s);
   checks.within(bounds::kTurnSpeed, base.turn_speed_rad_s);
@@ -97,16 +98,17 @@ void check_planner(Checks& checks, const planner_config_t& planner) {
   checks.within(bounds::kFactorWeight, planner.structure_weight);
   checks.within(bounds::kFactorWeight, planner.navigation_weight);
   checks.within(bounds::kPathCost, planner.path_cost_per_m);
-  checks.within(bounds::kDeparture, planner.later_departure_m);
+  checks.within(bounds::kDeparture.as("later_departure_m"), planner.later_departure_m);
   checks.within(bounds::kLeastOverlap, planner.least_overlap);
-  checks.within(bounds::kLeastGain, planner.least_gain_m2);
+  if (planner.least_gain_m2 != 0.0) checks.within(bounds::kLeastGain, planner.least_gain_m2);
   checks.within("return_home", planner.return_home, 0, 1);
   checks.within(bounds::kQualityThreshold, planner.quality_threshold);
   checks.within(bounds::kClearance, planner.clearance_m);
   checks.within(bounds::kDeparture, planner.departure_m);
-  checks.require(planner.directions == 20 || planner.directions == 80 ||
-                     planner.directions == 320 || planner.directions == 1280,
-                 "directions is not 20, 80, 320 or 1280");
+  checks.require(
+      std::ranges::find(bounds::kDirections, planner.directions) != bounds::kDirections.end(),
+      fmt::format("directions = {} is none of {}", planner.directions,
+                  fmt::join(bounds::kDirections, ", ")));
   checks.within(bounds::kThreads, planner.threads);
   checks.within(bounds::kStep, planner.step_min_m);
   checks.within(bounds::kStep, planner.step_max_m);
@@ -129,9 +131,9 @@ std::string check(const run_config_t& config) {
   check_planner(checks, config.planner);
   const StrategyFacts* strategy = find_strategy(config.strategy);
   checks.require(strategy != nullptr, no_such_strategy(config.strategy));
-  checks.require(
-      strategy == nullptr || !strategy->ends_by_least_gain || config.planner.least_gain_m2 > 0.0,
-      "least_gain_m2 is not above 0");
+  if (strategy != nullptr && strategy->ends_by_least_gain) {
+    checks.within(bounds::kLeastGain, config.planner.least_gain_m2);
+  }
   // The objective of such a strategy has no such factors: what is asked for must not be ignored.
   checks.require(
       strategy == nullptr || strategy->weighs_factors ||

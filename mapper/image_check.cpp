@@ -1,18 +1,15 @@
 #include "mapper/image_check.h"
 
-#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "lcmtypes/parameter_bounds.h"
 #include "sensor/range_image_check.h"
 
 namespace nextview {
 
 namespace {
-
-// Positions within this many voxels of the origin have an index (VoxelGrid::voxel_of).
-constexpr double kLargestIndex = 1e9;
 
 void refuse(const std::string& reason) {
   throw std::invalid_argument("a range image that cannot be right: " + reason);
@@ -43,9 +40,9 @@ void check_range_image(const RangeImage& image, const VoxelGrid& grid, const Map
   if (!are_ranges(image.range_m)) refuse("a negative range");
 
   for (int axis = 0; axis < 3; ++axis) {
-    // Written so that NaN fails.
+    // What lies farther away has no index (VoxelGrid::voxel_of).
     const double x = (image.position_m[axis] - grid.origin_m[axis]) / grid.voxel_size_m;
-    if (!(std::abs(x) < kLargestIndex)) refuse("the sensor's position");
+    if (!bounds::kWindowMin.contain(x)) refuse("the sensor's position");
   }
   if (!window.contains(grid.voxel_of(image.position_m))) {
     throw std::invalid_argument("the sensor lies outside the map's window");

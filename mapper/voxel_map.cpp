@@ -1,9 +1,12 @@
 #include "mapper/voxel_map.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <bit>
 #include <stdexcept>
-#include <string>
+
+#include "lcmtypes/parameter_bounds.h"
 
 namespace nextview {
 
@@ -18,20 +21,14 @@ Eigen::Vector3d SurfaceVoxel::mean_normal() const {
 
 namespace {
 
-constexpr int kMaxSide = 4096;
-
 void check(const VoxelGrid& grid, const MapWindow& window) {
-  if (!(grid.voxel_size_m > 0.0) || !std::isfinite(grid.voxel_size_m)) {
-    throw std::invalid_argument("the voxel size must be a positive length in metres");
-  }
-  if (!grid.origin_m.allFinite()) {
-    throw std::invalid_argument("the map's origin must be finite");
-  }
+  bounds::kVoxelSize.require(grid.voxel_size_m);
   for (int axis = 0; axis < 3; ++axis) {
-    if (window.size[axis] < 1 || window.size[axis] > kMaxSide) {
-      throw std::invalid_argument("the map's window is " + std::to_string(window.size[axis]) +
-                                  " voxels along axis " + std::to_string(axis) +
-                                  "; 1 to 4096 are possible: choose larger voxels");
+    bounds::kPosition.as("the map's origin, m,").require(grid.origin_m[axis]);
+    bounds::kWindowMin.require(window.min[axis]);
+    if (!bounds::kWindowSize.contain(window.size[axis])) {
+      throw std::invalid_argument(bounds::kWindowSize.refusal(window.size[axis]) +
+                                  ": choose larger voxels");
     }
   }
 }
@@ -50,8 +47,8 @@ VoxelMap::VoxelMap(const VoxelGrid& grid, const MapWindow& window) : grid_(grid)
     bits += std::countr_zero(side);
   }
   if (bits > 31) {
-    throw std::invalid_argument("the map's window needs 2^" + std::to_string(bits) +
-                                " voxel slots; 2^31 are possible: choose larger voxels");
+    throw std::invalid_argument(fmt::format(
+        "the map's window needs 2^{} voxel slots; 2^31 are possible: choose larger voxels", bits));
   }
   labels_.assign((std::size_t{1} << bits) + kLabelPadding, Label::Unmarked);
   blocks_.resize(blocks_along(mask_[0]) * blocks_along(mask_[1]) * blocks_along(mask_[2]));

@@ -1,18 +1,10 @@
 #include "planner/feasibility.h"
 
 #include <cmath>
-#include <stdexcept>
-#include <string>
-
-#include "lcmtypes/parameter_bounds.h"
 
 namespace nextview {
 
 namespace {
-
-void require(bool holds, const char* parameter, const char* rule) {
-  if (!holds) throw std::invalid_argument(std::string(parameter) + " must be " + rule);
-}
 
 // The least whole number that is not below a squared length of so many units.
 int squared(double units) {
@@ -33,10 +25,14 @@ void FeasibilityParameters::check() const {
   if (body_radius_m != 0.0) bounds::kBodyRadius.require(body_radius_m);
   bounds::kDeparture.require(departure_m);
   for (int axis = 0; axis < 3; ++axis) {
-    require(workspace_min_m[axis] < workspace_max_m[axis], "workspace_min_m",
-            "below workspace_max_m on every axis");
+    bounds::kWorkspace.require(workspace_min_m[axis]);
+    bounds::kWorkspace.require(workspace_max_m[axis]);
+    require_below("workspace_min_m", workspace_min_m[axis], "workspace_max_m",
+                  workspace_max_m[axis]);
   }
-  require(lift_min_m <= lift_max_m, "lift_min_m", "at most lift_max_m");
+  bounds::kLift.require(lift_min_m);
+  bounds::kLift.require(lift_max_m);
+  require_below("lift_min_m", lift_min_m, "lift_max_m", lift_max_m);
 }
 
 bool FeasibilityParameters::within_limits(const Eigen::Vector3d& position_m) const {

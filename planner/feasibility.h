@@ -1,8 +1,8 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <limits>
 
+#include "lcmtypes/parameter_bounds.h"
 #include "mapper/voxel_grid.h"
 
 namespace nextview {
@@ -45,7 +45,7 @@ class VoxelNearness {
 /// depends on its voxel only. The true distance of a sensed point can be smaller than the clearance
 /// by a voxel's diagonal at most.
 struct FeasibilityParameters {
-  static constexpr double kUnlimited = std::numeric_limits<double>::infinity();
+  static constexpr double kUnlimited = bounds::kWorkspace.most;  ///< there is nothing beyond
 
   double clearance_m = 0.40;    ///< no Occupied voxel nearer to the sensor or its path (P19)
   double body_radius_m = 0.20;  ///< nor anything unknown; 0: unknown space may be near

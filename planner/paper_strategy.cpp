@@ -1,5 +1,7 @@
 #include "planner/paper_strategy.h"
 
+#include <fmt/format.h>
+
 #include <array>
 #include <cmath>
 #include <limits>
@@ -78,7 +80,7 @@ std::array<Eigen::Vector3d, 4> initial_vertices(const Eigen::Vector3d& present_m
 }
 
 std::string reason_of(const Decision& decision) {
-  const auto percent = [](double share) { return std::to_string(std::lround(100.0 * share)); };
+  const auto percent = [](double share) { return fmt::format("{}", std::lround(100.0 * share)); };
   const Fitness& fitness = decision.fitness;
   return "the best of " + std::to_string(decision.evaluations) +
          " positions tried: of what its rays meet " + percent(fitness.share_occupied) +

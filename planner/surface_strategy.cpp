@@ -3,10 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
-#include <stdexcept>
 #include <utility>
 
+#include "lcmtypes/parameter_bounds.h"
 #include "planner/strategy_inputs.h"
 
 namespace nextview {
@@ -18,6 +17,10 @@ constexpr std::size_t kFewPositions = 40;
 /// Of the positions judged so many are told, at most: what was tried for a goal has to fit one
 /// message.
 constexpr std::size_t kMostTried = 1200;
+// Of what no message and no option says.
+constexpr Bounds kUnknownWeight{"unknown_weight", 0.0, 1.0};
+constexpr Bounds kImprovementWeight{"improvement_weight", 0.0, 10.0};
+constexpr Bounds kSpacing{"spacing_voxels", 1, 1000};
 /// So many positions are refined.
 constexpr std::size_t kRefined = 4;
 
@@ -33,20 +36,14 @@ SurfaceGain::Parameters gain_parameters(const SurfaceParameters& parameters) {
 }  // namespace
 
 void SurfaceParameters::check() const {
-  const auto require = [](bool holds, const char* parameter, const char* rule) {
-    if (!holds) throw std::invalid_argument(std::string(parameter) + " must be " + rule);
-  };
-  require(path_cost_per_m >= 0.0 && std::isfinite(path_cost_per_m), "path_cost_per_m", "0 or more");
-  require(unknown_weight >= 0.0 && unknown_weight <= 1.0, "unknown_weight", "in [0, 1]");
-  require(improvement_weight >= 0.0 && improvement_weight <= 10.0, "improvement_weight",
-          "in [0, 10]");
-  require(min_overlap >= 0.0 && min_overlap < 1.0, "min_overlap", "in [0, 1)");
-  require(least_new_area_m2 > 0.0 && std::isfinite(least_new_area_m2), "least_new_area_m2",
-          "positive");
-  require(first_departure_m >= 0.0 && first_departure_m <= 5.0, "first_departure_m",
-          "a length from 0 to 5 m");
-  require(departure_m >= 0.0 && departure_m <= 5.0, "departure_m", "a length from 0 to 5 m");
-  require(spacing_voxels >= 1, "spacing_voxels", "at least 1");
+  bounds::kPathCost.require(path_cost_per_m);
+  kUnknownWeight.require(unknown_weight);
+  kImprovementWeight.require(improvement_weight);
+  bounds::kLeastOverlap.as("min_overlap").require(min_overlap);
+  bounds::kLeastGain.as("least_new_area_m2").require(least_new_area_m2);
+  bounds::kDeparture.as("first_departure_m").require(first_departure_m);
+  bounds::kDeparture.require(departure_m);
+  kSpacing.require(spacing_voxels);
   feasibility.check();
 }
 

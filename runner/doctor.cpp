@@ -1,11 +1,11 @@
 #include "runner/doctor.h"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
-#include <iomanip>
 
 #include "lcmtypes/multicast_probe.h"
 #include "lcmtypes/program_version.h"
@@ -117,8 +117,8 @@ std::vector<Finding> examine_machine(const std::string& cache_option) {
 bool show_findings(std::ostream& to, const std::vector<Finding>& findings) {
   bool all = true;
   for (const Finding& finding : findings) {
-    to << (finding.good ? "  ok    " : "  FAILS ") << std::left << std::setw(15) << finding.what
-       << finding.detail << "\n";
+    to << fmt::format("  {:<6}{:<15}{}\n", finding.good ? "ok" : "FAILS", finding.what,
+                      finding.detail);
     all = all && finding.good;
   }
   return all;

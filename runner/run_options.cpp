@@ -1,11 +1,11 @@
 #include "runner/run_options.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
-#include <numbers>
 
 #include "lcmtypes/parameter_bounds.h"
 #include "lcmtypes/program_version.h"
@@ -28,14 +28,6 @@ CLI::Validator number_within(const Bounds& bounds) {
         return std::string();
       },
       "");
-}
-/// Of what is no parameter of a message.
-CLI::Validator number_in(double least, double most) { return number_within({"", least, most}); }
-
-/// In degrees, as typed.
-constexpr Bounds in_degrees(const Bounds& radians) {
-  constexpr double kDegreesPerRad = 180.0 / std::numbers::pi;
-  return {radians.name, radians.least * kDegreesPerRad, radians.most * kDegreesPerRad};
 }
 
 /// "paper: this; surface: that", for a help text.
@@ -89,10 +81,10 @@ void add_scene_options(CLI::App& app, RunOptions& options) {
   app.add_option("--start-pan", options.start_pan_deg,
                  "Where it looks at first, degrees: 0 along +y, 90 along -x; default: as the scene "
                  "says")
-      ->check(number_in(-360.0, 360.0))
+      ->check(number_within(bounds::kPan.in_degrees()))
       ->group(group);
   app.add_option("--start-tilt", options.start_tilt_deg, "Its elevation at first, degrees")
-      ->check(number_in(-90.0, 90.0))
+      ->check(number_within(bounds::kTilt.in_degrees()))
       ->capture_default_str()
       ->group(group);
   app.add_option("--unit", options.unit,
@@ -120,7 +112,7 @@ void add_scene_options(CLI::App& app, RunOptions& options) {
   app.add_option("--workspace", options.workspace_m,
                  "Without a scene: X0 Y0 Z0 X1 Y1 Z1, the box to be recovered, in metres")
       ->expected(6)
-      ->check(number_in(-8192.0, 8192.0))
+      ->check(number_within(bounds::kWorkspace))
       ->group(group);
   app.add_option("--scenes", options.scenes_folder, "Folder of the scenes known by name")
       ->capture_default_str()
@@ -157,7 +149,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
       ->group(group);
   app.add_option("--patience", options.patience_s,
                  "Seconds without anything happening after which the run gives up")
-      ->check(number_in(0.1, 1e6))
+      ->check(number_within(bounds::kPatience))
       ->capture_default_str()
       ->group(group);
   app.add_flag("--real-time{1}", options.real_time,
@@ -173,7 +165,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
       ->group(group);
   app.add_option("--bound-spacing", options.bound_spacing_m,
                  "Spacing of the positions that nextview_bound looks at, m")
-      ->check(number_in(0.05, 100.0))
+      ->check(number_within(bounds::kBoundSpacing))
       ->capture_default_str()
       ->group(group);
   app.add_flag("--no-coverage", options.no_coverage, "Do not work out surface_coverage")
@@ -201,7 +193,7 @@ void add_sensor_options(CLI::App& app, RunOptions& options) {
       ->group(group);
   app.add_option("--aperture", options.aperture_deg,
                  "Horizontal aperture, degrees; a tilted line scan's vertical one follows from it")
-      ->check(number_in(1.0, 360.0))
+      ->check(number_within(bounds::kTurnAperture.in_degrees()))
       ->group(group);
   app.add_option("--range-min", given.range_min_m, "Nearer surfaces give no valid range, m")
       ->check(number_within(bounds::kRangeMin))
@@ -244,7 +236,7 @@ void add_base_options(CLI::App& app, RunOptions& options) {
       ->capture_default_str()
       ->group(group);
   app.add_option("--turn-speed", options.turn_speed_deg_s, "Of pan and of tilt, degrees/s")
-      ->check(number_within(in_degrees(bounds::kTurnSpeed)))
+      ->check(number_within(bounds::kTurnSpeed.in_degrees()))
       ->capture_default_str()
       ->group(group);
 }
@@ -257,7 +249,7 @@ void add_map_options(CLI::App& app, RunOptions& options) {
       ->group(group);
   app.add_option("--margin-voxels", options.margin_voxels,
                  "Voxels the map reaches beyond the scene on every side")
-      ->check(number_in(0, 1000))
+      ->check(number_within(bounds::kMarginVoxels))
       ->capture_default_str()
       ->group(group);
 }
@@ -311,10 +303,12 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
       ->capture_default_str()
       ->group(group);
   app.add_option("--directions", options.directions,
-                 "Orientations tried at every position: 20, 80, 320 or 1280; default: " +
+                 fmt::format("Orientations tried at every position, one of {}; default: ",
+                             fmt::join(bounds::kDirections, ", ")) +
                      of_strategies(
                          [](const auto& strategy) { return std::to_string(strategy.directions); }))
-      ->check(CLI::IsMember({20, 80, 320, 1280}))
+      ->check(
+          CLI::IsMember(std::vector<int>(bounds::kDirections.begin(), bounds::kDirections.end())))
       ->group(group);
   app.add_option("--prediction-rays", options.prediction_rays,
                  "COLUMNSxROWS: the rays a view is predicted with, at most; default 64x32")

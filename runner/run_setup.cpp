@@ -86,7 +86,8 @@ SensorModel sensor_given(const RunOptions& options) {
     sensor =
         find_sensor(options.sensor, ours ? NEXTVIEW_SENSORS_FOLDER : options.sensors_folder, given);
   } catch (const SensorError& error) {
-    throw SetupError("--sensor: " + std::string(error.what()));
+    throw SetupError(std::string(options.aperture_deg ? "--sensor, --aperture: " : "--sensor: ") +
+                     error.what());
   }
   if (sensor.limits.min_m >= sensor.limits.max_m) {
     throw SetupError("--range-min must be below --range-max");
@@ -143,20 +144,19 @@ void fill_base(run_config_t& config, const RunOptions& options, const Eigen::Ali
   config.base.turn_speed_rad_s = options.turn_speed_deg_s * kRadPerDegree;
 }
 
-void fill_map(run_config_t& config, const RunOptions& options, const Eigen::AlignedBox3d& bounds) {
-  constexpr double kLargestSide = 4096.0;
+void fill_map(run_config_t& config, const RunOptions& options, const Eigen::AlignedBox3d& box) {
   config.map.voxel_size_m = options.voxel_size_m;
-  const double sides = bounds.sizes().maxCoeff() / options.voxel_size_m + 2 * options.margin_voxels;
-  if (sides > kLargestSide - 2.0) {
+  const double sides = box.sizes().maxCoeff() / options.voxel_size_m + 2 * options.margin_voxels;
+  if (sides > bounds::kWindowSize.most - 2.0) {
     throw SetupError(
-        fmt::format("the scene is {:.2f} m long, more than the 4096 voxels a map may have: give a "
+        fmt::format("the scene is {:.2f} m long, more than the {} voxels a map may have: give a "
                     "larger --voxel-size, or the right --unit",
-                    bounds.sizes().maxCoeff()));
+                    box.sizes().maxCoeff(), bounds::kWindowSize.most));
   }
   const VoxelGrid grid = grid_of(config);
   const VoxelIndex margin = VoxelIndex::Constant(options.margin_voxels);
-  const VoxelIndex min = grid.voxel_of(bounds.min()) - margin;
-  const VoxelIndex max = grid.voxel_of(bounds.max()) + margin;
+  const VoxelIndex min = grid.voxel_of(box.min()) - margin;
+  const VoxelIndex max = grid.voxel_of(box.max()) + margin;
   for (int axis = 0; axis < 3; ++axis) {
     config.map.window_min[axis] = min[axis];
     config.map.window_size[axis] = max[axis] - min[axis] + 1;

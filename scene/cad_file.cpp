@@ -17,6 +17,7 @@
 #include <unordered_set>
 #include <utility>
 
+#include "lcmtypes/parameter_bounds.h"
 #include "scene/vertex_shift.h"
 
 namespace nextview {
@@ -91,7 +92,7 @@ Eigen::Matrix4d world_from_root(const aiScene& scene, const std::string& reader,
 
 // Up to here floats, which is what Debian's assimp makes of every coordinate, tell millimetres
 // apart.
-constexpr double kFarthest_m = 8192.0;
+constexpr double kFarthest_m = bounds::kWorkspace.most;
 
 // To a hundredth of a millimetre, far below what a sensor measures: so the same room is the same to
 // the last bit whatever format, unit, axis and nodes it has gone through.

@@ -54,8 +54,7 @@ bool answer_into(std::FILE* file, char** argv) {
 /// --help, --version, or a wrong command line.
 int explain(std::string_view asked) {
   if (asked == "--version") {
-    const std::string version(nextview::program_version());
-    std::printf("nextview_cad_reader %s\n", version.c_str());
+    std::puts(("nextview_cad_reader " + std::string(nextview::program_version())).c_str());
     return 0;
   }
   std::fputs(kUsage, asked == "--help" ? stdout : stderr);

@@ -1,8 +1,9 @@
 #include "scene/scene_options.h"
 
 #include <charconv>
-#include <cmath>
 #include <string>
+
+#include "lcmtypes/parameter_bounds.h"
 
 namespace nextview {
 
@@ -33,12 +34,12 @@ double parse_unit_m(std::string_view text) {
   if (text == "ft") return 0.3048;
   double metres = 0.0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), metres);
-  if (error == std::errc() && end == text.data() + text.size() && std::isfinite(metres) &&
-      metres > 0.0) {
+  if (error == std::errc() && end == text.data() + text.size() && bounds::kUnit.contain(metres)) {
     return metres;
   }
   throw std::invalid_argument("unit '" + std::string(text) +
-                              "': must be m, cm, mm, in, ft or a positive number of metres");
+                              "': must be m, cm, mm, in, ft or metres, a number " +
+                              bounds::kUnit.range());
 }
 
 }  // namespace nextview

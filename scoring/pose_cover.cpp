@@ -9,6 +9,7 @@
 #include <string>
 #include <tuple>
 
+#include "lcmtypes/parameter_bounds.h"
 #include "planner/prediction/orientations.h"
 #include "scoring/on_all_cores.h"
 #include "sensor_sim/scan.h"
@@ -126,13 +127,13 @@ class CoverFinder {
 
 }  // namespace
 
+void PoseParameters::check() const { bounds::kBoundSpacing.require(spacing_m); }
+
 PoseCover cover_of_poses(const Scene& scene, const SensorPose& start,
                          const std::vector<Eigen::Vector3d>& reachable,
                          const VisibleSurface& surface, const PoseParameters& parameters,
                          const std::stop_token& stop, VisibilityProgress* progress) {
-  if (!(parameters.spacing_m > 0.0) || !std::isfinite(parameters.spacing_m)) {
-    throw std::invalid_argument("the spacing of positions must be positive");
-  }
+  parameters.check();
   PoseCover cover;
   cover.poses.push_back(start);
   const std::vector<Orientation> orientations = icosahedron_orientations(parameters.subdivisions);

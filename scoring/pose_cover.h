@@ -20,6 +20,9 @@ struct PoseParameters {
   double spacing_m = 0.40;  ///< of positions
   int subdivisions = 2;     ///< of the icosahedron whose faces are the orientations: 320
   std::size_t most_entries = 1'000'000'000;  ///< pairs of pose and voxel, 4 bytes each
+
+  /// @throws std::invalid_argument naming the parameter that cannot be
+  void check() const;
 };
 
 /// What a sensor would recover from each of many poses.
@@ -32,7 +35,7 @@ struct PoseCover {
 /// Scans a scene, without noise, from the start and from positions at a spacing, in all
 /// orientations. A pose covers the voxels that its points fall in, as in a run.
 /// @param reachable positions of a lattice; taken are those nearest to multiples of the spacing
-/// @throws std::invalid_argument for a spacing that is not positive, and when the result would be
+/// @throws std::invalid_argument for parameters that cannot be, and when the result would be
 ///         too large
 PoseCover cover_of_poses(const Scene& scene, const SensorPose& start,
                          const std::vector<Eigen::Vector3d>& reachable,

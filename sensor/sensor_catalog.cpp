@@ -125,7 +125,7 @@ SensorModel find_sensor(const std::string& name_or_file, const fs::path& catalog
   SensorModel sensor;
   try {
     sensor.geometry = geometry_of(file, given);
-    make_ray_table(sensor.geometry);  // throws where there can be no such sensor
+    check_sensor(sensor.geometry);
   } catch (const std::invalid_argument& error) {
     file.fail(error.what());
   }
@@ -138,6 +138,11 @@ SensorModel find_sensor(const std::string& name_or_file, const fs::path& catalog
   take(given.range_noise_m, "range_noise_m", sensor.range_noise_m);
   take(given.scan_duration_s, "scan_duration_s", sensor.scan_duration_s);
   file.refuse_what_was_not_read();
+  try {
+    check_sensor(sensor);
+  } catch (const std::invalid_argument& error) {
+    file.fail(error.what());
+  }
   return sensor;
 }
 

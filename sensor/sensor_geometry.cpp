@@ -1,10 +1,11 @@
 #include "sensor/sensor_geometry.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
-#include <string>
 
 #include "lcmtypes/parameter_bounds.h"
 
@@ -12,37 +13,34 @@ namespace nextview {
 
 namespace {
 
-constexpr double kHalfTurn = std::numbers::pi;
+constexpr double kTurn = 2.0 * std::numbers::pi;
 
 void check_raster(int columns, int rows) {
   bounds::kColumns.require(columns);
   bounds::kRows.require(rows);
 }
 
-// An aperture ends below its limit, or with it where that is a whole turn.
-void check_aperture(const char* name, double angle_rad, double most_rad) {
-  const bool in_range =
-      most_rad < 2.0 * kHalfTurn ? angle_rad < most_rad : angle_rad <= most_rad * (1.0 + 1e-12);
-  if (angle_rad > 0.0 && in_range) return;
-  throw std::invalid_argument(
-      "a sensor's " + std::string(name) + " of " + std::to_string(angle_rad * 180.0 / kHalfTurn) +
-      " degrees is not above 0 and below " + (most_rad < 2.0 * kHalfTurn ? "180" : "or at 360"));
+void check_aperture(const char* name, double angle_rad, const Bounds& bounds) {
+  if (bounds.contain(angle_rad)) return;
+  const double degrees = angle_rad * 360.0 / kTurn;
+  throw std::invalid_argument(fmt::format("a sensor's {} of {:.7g} degrees is not {}", name,
+                                          degrees, bounds.in_degrees().range()));
 }
 
 void check(const TiltedLineScan& sensor) {
   check_raster(sensor.columns, sensor.rows);
-  check_aperture("horizontal aperture", sensor.horizontal_aperture_rad, kHalfTurn);
-  check_aperture("vertical aperture", sensor.vertical_aperture_rad, kHalfTurn);
+  check_aperture("horizontal aperture", sensor.horizontal_aperture_rad, bounds::kAperture);
+  check_aperture("vertical aperture", sensor.vertical_aperture_rad, bounds::kAperture);
 }
 void check(const SphericalScanner& sensor) {
   check_raster(sensor.columns, sensor.rows);
-  check_aperture("horizontal aperture", sensor.horizontal_aperture_rad, 2.0 * kHalfTurn);
-  check_aperture("vertical aperture", sensor.vertical_aperture_rad, kHalfTurn);
+  check_aperture("horizontal aperture", sensor.horizontal_aperture_rad, bounds::kTurnAperture);
+  check_aperture("vertical aperture", sensor.vertical_aperture_rad, bounds::kAperture);
 }
 void check(const LineStriper& sensor) {
   check_raster(sensor.columns, sensor.rows);
-  check_aperture("sweep", sensor.sweep_rad, kHalfTurn);
-  check_aperture("vertical aperture", sensor.vertical_aperture_rad, kHalfTurn);
+  check_aperture("sweep", sensor.sweep_rad, bounds::kAperture);
+  check_aperture("vertical aperture", sensor.vertical_aperture_rad, bounds::kAperture);
   bounds::kBaseline.require(sensor.baseline_m);
 }
 
@@ -78,10 +76,8 @@ TiltedLineScan TiltedLineScan::paper() { return with_aperture(64, 30, std::numbe
 TiltedLineScan TiltedLineScan::with_aperture(int columns, int rows,
                                              double horizontal_aperture_rad) {
   check_raster(columns, rows);
-  if (!(horizontal_aperture_rad > 0.0 && horizontal_aperture_rad < std::numbers::pi / 2.0)) {
-    throw std::invalid_argument(
-        "the horizontal aperture must lie between 0 and 90 degrees, both excluded");
-  }
+  check_aperture("horizontal aperture from which its vertical one follows", horizontal_aperture_rad,
+                 bounds::kTiltedAperture);
   TiltedLineScan sensor;
   sensor.columns = columns;
   sensor.rows = rows;
@@ -100,8 +96,8 @@ RayTable make_ray_table(const TiltedLineScan& sensor) {
 
 RayTable make_ray_table(const SphericalScanner& sensor) {
   check(sensor);
-  const double spacing = std::min(sensor.horizontal_aperture_rad / (sensor.columns - 1),
-                                  2.0 * kHalfTurn / sensor.columns);
+  const double spacing =
+      std::min(sensor.horizontal_aperture_rad / (sensor.columns - 1), kTurn / sensor.columns);
   Axis phi;
   for (int u = 0; u < sensor.columns; ++u) phi.add(spacing * (0.5 * (sensor.columns - 1) - u));
   return upright(SensorKind::Spherical, phi,
@@ -120,6 +116,15 @@ RayTable make_ray_table(const LineStriper& sensor) {
 
 void check_sensor(const SensorGeometry& sensor) {
   std::visit([](const auto& of) { check(of); }, sensor);
+}
+
+void check_sensor(const SensorModel& sensor) {
+  check_sensor(sensor.geometry);
+  bounds::kRangeMin.require(sensor.limits.min_m);
+  bounds::kRangeMax.require(sensor.limits.max_m);
+  require_below("range_min_m", sensor.limits.min_m, "range_max_m", sensor.limits.max_m);
+  bounds::kRangeNoise.require(sensor.range_noise_m);
+  bounds::kScanDuration.require(sensor.scan_duration_s);
 }
 
 SensorGeometry with_raster(SensorGeometry sensor, int columns, int rows) {
@@ -171,8 +176,7 @@ SensorGeometry make_sensor(SensorKind kind, int columns, int rows,
     case SensorKind::LineStriper:
       return LineStriper{columns, rows, parameters[0], parameters[1], parameters[2]};
   }
-  throw std::invalid_argument("there is no sensor of kind " +
-                              std::to_string(static_cast<int>(kind)));
+  throw std::invalid_argument(fmt::format("there is no sensor of kind {}", static_cast<int>(kind)));
 }
 
 double baseline_m_of(const SensorGeometry& sensor) {

@@ -51,4 +51,8 @@ struct SensorModel {
   double scan_duration_s = 1.0;  ///< simulated time one scan takes
 };
 
+/// Whether there can be such a sensor.
+/// @throws std::invalid_argument naming the parameter that cannot be
+void check_sensor(const SensorModel& sensor);
+
 }  // namespace nextview

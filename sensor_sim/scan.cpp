@@ -4,6 +4,7 @@
 #include <span>
 #include <stdexcept>
 
+#include "lcmtypes/parameter_bounds.h"
 #include "sensor_sim/camera_shadow.h"
 #include "sensor_sim/measured_range.h"
 #include "sensor_sim/strip_caster.h"
@@ -17,12 +18,10 @@ void check(const RayTable& rays, const RangeLimits& limits, const SensorPose& po
       rays.row_cos.size() != rays.row_sin.size()) {
     throw std::invalid_argument("a scan needs a ray table with as many sines as cosines");
   }
-  if (!(limits.min_m >= 0.0 && limits.min_m <= limits.max_m && std::isfinite(limits.max_m))) {
-    throw std::invalid_argument("range limits must be finite with 0 <= minimum <= maximum");
-  }
-  if (!(range_noise_m >= 0.0 && std::isfinite(range_noise_m))) {
-    throw std::invalid_argument("range noise must be a finite standard deviation, 0 or more");
-  }
+  bounds::kRangeMin.require(limits.min_m);
+  bounds::kRangeMax.require(limits.max_m);
+  require_below("range_min_m", limits.min_m, "range_max_m", limits.max_m);
+  bounds::kRangeNoise.require(range_noise_m);
   if (!pose.position_m.allFinite() || !std::isfinite(pose.pan_rad) ||
       !std::isfinite(pose.tilt_rad)) {
     throw std::invalid_argument("a scan needs a finite pose");

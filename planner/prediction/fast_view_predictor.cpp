@@ -6,6 +6,7 @@
 #include <array>
 #include <stdexcept>
 
+#include "lcmtypes/parameter_bounds.h"
 #include "sensor/sensor_pose.h"
 
 namespace nextview {
@@ -97,7 +98,7 @@ FastViewPredictor::FastViewPredictor(const PredictionRaster& raster, double voxe
       rays_per_view_(static_cast<std::int64_t>(raster.rays.pixels())),
       packets_of_(this->orientations().size()),
       workspaces_(static_cast<std::size_t>(std::max(threads, 1))) {
-  if (threads < 1) throw std::invalid_argument("a view predictor needs a thread");
+  bounds::kThreads.require(threads);
   make_tables(raster, voxel_size_m);
 }
 

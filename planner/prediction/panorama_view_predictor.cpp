@@ -9,6 +9,7 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "lcmtypes/parameter_bounds.h"
 #include "sensor/sensor_pose.h"
 
 namespace nextview {
@@ -99,7 +100,7 @@ PanoramaViewPredictor::PanoramaViewPredictor(const PredictionRaster& raster, dou
     : RasterViewPredictor(raster, voxel_size_m, std::move(orientations), counts_surfaces),
       rays_per_view_(static_cast<std::int64_t>(raster.rays.pixels())),
       surface_counts_(static_cast<std::size_t>(std::max(threads, 1))) {
-  if (threads < 1) throw std::invalid_argument("a view predictor needs a thread");
+  bounds::kThreads.require(threads);
   faces_ = cube_faces(prediction_reach(raster, voxel_size_m));
   for (const Orientation& orientation : this->orientations()) {
     append_view(raster.rays, orientation);

@@ -5,12 +5,15 @@
 #include <stdexcept>
 #include <string>
 
+#include "lcmtypes/parameter_bounds.h"
 #include "sensor/sensor_pose.h"
 
 namespace nextview {
 
 PredictionRaster prediction_raster(const SensorGeometry& sensor, const RangeLimits& limits,
                                    const PredictionRays& at_most) {
+  bounds::kPredictionRays.require(at_most.columns);
+  bounds::kPredictionRays.require(at_most.rows);
   return {make_ray_table(with_raster(sensor, std::min(columns_of(sensor), at_most.columns),
                                      std::min(rows_of(sensor), at_most.rows))),
           limits.max_m};

@@ -27,6 +27,7 @@ struct PredictionRays {
 
 /// The sensor's own rays, or with a larger sensor as many of them as is said, spread evenly over
 /// the same apertures.
+/// @throws std::invalid_argument for a sensor or numbers of rays that cannot be
 PredictionRaster prediction_raster(const SensorGeometry& sensor, const RangeLimits& limits,
                                    const PredictionRays& at_most = {});
 

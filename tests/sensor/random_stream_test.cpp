@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <iostream>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -121,11 +120,14 @@ TEST(RandomStream, GaussianDoesNotDependOnTheProcessor) {
     return bits;
   };
   const NoiseBits as_it_is = noise_with("");
-  const NoiseBits without = noise_with("glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX512F");
+  // By their names before glibc 2.33 and since.
+  const NoiseBits without = noise_with(
+      "glibc.cpu.hwcaps=-FMA,-FMA4,-AVX2,-AVX512F,-FMA_Usable,-FMA4_Usable,-AVX2_Usable");
   EXPECT_EQ(as_it_is.noise, noise_bits().noise);
   EXPECT_EQ(without.noise, as_it_is.noise);
   if (without.libc == as_it_is.libc) {
-    std::cout << "here the C library's own log and cos do not differ either\n";
+    GTEST_SKIP() << "here the C library's own log and cos do not differ either: the processor has "
+                    "no FMA, or the library cannot be told that it has none";
   }
 }
 

@@ -7,6 +7,7 @@
 #include <map>
 #include <regex>
 #include <set>
+#include <sstream>
 #include <string>
 #include <vector>
 
@@ -106,6 +107,11 @@ std::vector<Source> sources() {
   return found;
 }
 
+std::string text_of(const fs::path& file) {
+  std::ifstream in(fs::path(NEXTVIEW_SOURCE_DIR) / file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
 std::vector<std::string> includes_of(const Source& source) {
   static const std::regex kInclude(R"re(^\s*#\s*include\s*([<"][^>"]+)[>"])re");
   std::ifstream in(fs::path(NEXTVIEW_SOURCE_DIR) / source.file);
@@ -197,6 +203,35 @@ TEST(IncludeArrows, HideEmbreeAndAssimp) {
   EXPECT_EQ(users["embree"], std::set<std::string>{"scene/scene.cpp"});
   EXPECT_EQ(users["assimp"],
             (std::set<std::string>{"exporter/mesh_writer.cpp", "scene/cad_file.cpp"}));
+}
+
+/// A pattern that libfmt checks against its values, and one way to write a number.
+TEST(IncludeArrows, WriteNumbersByLibfmt) {
+  static const std::regex kByHand(R"(\bv?s?n?f?printf\(|setprecision|\bsetw\()");
+  std::vector<fs::path> files;
+  for (const Source& source : sources()) files.push_back(source.file);
+  for (const auto& entry : fs::directory_iterator(fs::path(NEXTVIEW_SOURCE_DIR) / "bench")) {
+    files.push_back(fs::path("bench") / entry.path().filename());
+  }
+  for (const fs::path& file : files) {
+    const std::string text = text_of(file);
+    std::smatch found;
+    EXPECT_FALSE(std::regex_search(text, found, kByHand)) << file << ": " << found.str();
+  }
+}
+
+/// The program that holds the versions for each instruction set against each other is compiled
+/// from a list of its own.
+TEST(IncludeArrows, KnowEverySourceWithVectorClones) {
+  static const std::regex kClones(R"((^|\n)NEXTVIEW_VECTOR_CLONES\b)");
+  std::set<std::string> cloned;
+  for (const Source& source : sources()) {
+    if (std::regex_search(text_of(source.file), kClones)) cloned.insert(source.file.string());
+  }
+  std::set<std::string> listed;
+  std::istringstream list(NEXTVIEW_CLONED_SOURCES);
+  for (std::string file; list >> file;) listed.insert(file);
+  EXPECT_EQ(listed, cloned);
 }
 
 TEST(IncludeArrows, LeaveClocksAndGeneratorsOutOfLibraries) {

@@ -5,12 +5,14 @@
 #include <iostream>
 #include <limits>
 #include <numbers>
+#include <utility>
 #include <vector>
 
 #include "mapper/map_blocks.h"
 #include "mapper/map_builder.h"
 #include "planner/prediction/free_space_field.h"
 #include "scene/scene.h"
+#include "sensor/range_image_check.h"
 #include "sensor_sim/measured_range.h"
 #include "sensor_sim/scan.h"
 #include "tests/scene/test_worlds.h"
@@ -79,6 +81,29 @@ void mix_measured_ranges() {
   print("measured_ranges", mix);
 }
 
+// Ranges that are right, and with one that is negative in every place of the vectors and of what is
+// left over behind them.
+void mix_range_checks() {
+  Mix mix;
+  RandomStream random = random_stream(2);
+  for (std::size_t count = 0; count < 70; ++count) {
+    std::vector<float> range_m(count);
+    for (float& each : range_m) {
+      each = random.below(5) == 0 ? std::numeric_limits<float>::quiet_NaN()
+                                  : static_cast<float>(6.0 * random.uniform());
+    }
+    mix.add(std::uint64_t{are_ranges(range_m)});
+    for (float& each : range_m) {
+      for (const float wrong : {-0.5f, -std::numeric_limits<float>::infinity(), -0.0f}) {
+        const float right = std::exchange(each, wrong);
+        mix.add(std::uint64_t{are_ranges(range_m)});
+        each = right;
+      }
+    }
+  }
+  print("range_checks", mix);
+}
+
 void mix_block_numbers() {
   Mix mix;
   const VoxelMap map({}, {{-13, 5, 1000}, {50, 64, 9}});
@@ -99,5 +124,6 @@ void mix_block_numbers() {
 int main() {
   nextview::mix_images_maps_and_fields();
   nextview::mix_measured_ranges();
+  nextview::mix_range_checks();
   nextview::mix_block_numbers();
 }

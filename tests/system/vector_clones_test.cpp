@@ -25,8 +25,8 @@ std::string output_of(const std::string& instruction_set) {
 TEST(VectorClones, GiveTheSameBitsOnEveryInstructionSetOfThisProcessor) {
   const std::string expected = output_of("default");
   EXPECT_NE(expected.find("block_numbers"), std::string::npos);
-#if defined(__x86_64__) && defined(__linux__)
   int compared = 0;
+#if defined(__x86_64__) && defined(__linux__)
   if (__builtin_cpu_supports("avx2")) {
     EXPECT_EQ(output_of("avx2"), expected);
     ++compared;
@@ -35,8 +35,9 @@ TEST(VectorClones, GiveTheSameBitsOnEveryInstructionSetOfThisProcessor) {
     EXPECT_EQ(output_of("avx512f"), expected);
     ++compared;
   }
-  std::cout << compared << " compared with any x86-64's\n";
 #endif
+  if (compared == 0) GTEST_SKIP() << "this processor has neither AVX2 nor AVX-512: none compared";
+  std::cout << compared << " compared with any x86-64's\n";
 }
 
 }  // namespace
