@@ -8,8 +8,8 @@
 
 namespace nextview {
 
-/// For programs that read no options by CLI11: when --version is all that was typed, prints name and
-/// version as the others do.
+/// For programs that read no options by CLI11: when --version is all that was typed, prints name
+/// and version as the others do.
 /// @return whether it was, and the program has nothing more to do
 inline bool tell_version(int argc, char** argv) {
   if (argc != 2 || std::string(argv[1]) != "--version") return false;

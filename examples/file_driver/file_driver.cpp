@@ -19,7 +19,7 @@ using namespace nextview;
 
 class FileDriver {
  public:
-  FileDriver(Bus& bus, const std::filesystem::path& folder) : bus_(bus), files_(folder) {
+  FileDriver(Bus& bus, const RecordedFiles& files) : bus_(bus), files_(files) {
     bus_.on<goal_t>([this](const goal_t& goal) { goals_.push_back(goal); });
     bus_.on<stop_t>([this](const stop_t& stop) { stop_reason_ = stop.stop_reason; });
     // Whoever asks for what has not been published yet knows of a goal that was lost on its way
@@ -81,7 +81,7 @@ class FileDriver {
   }
 
   Bus& bus_;
-  RecordedFiles files_;
+  const RecordedFiles& files_;
   std::deque<goal_t> goals_;
   std::string stop_reason_;
 };
@@ -95,8 +95,9 @@ int main(int argc, char** argv) {
     return 2;
   }
   try {
+    const RecordedFiles files(argv[3]);
     Bus bus(argv[1], std::stoll(argv[2]), "file_driver");
-    FileDriver(bus, argv[3]).run();
+    FileDriver(bus, files).run();
     return 0;
   } catch (const std::exception& error) {
     std::fprintf(stderr, "file_driver: %s\n", error.what());

@@ -41,8 +41,9 @@ def arrival_message(view, attempt, line):
     return arrival
 
 
-class RecordedScans:
+class RecordedFiles:
     def __init__(self, folder):
+        self.arrivals = {key_of(line): line for line in lines_of(folder / "arrivals.csv")}
         self.folder = folder
         self.sensor = lines_of(folder / "sensor.csv")[0]
         self.rays = [(float(line["sin"]), float(line["cos"])) for line in lines_of(folder / "rays.csv")]
@@ -84,10 +85,9 @@ class RecordedScans:
 
 
 class FileDriver:
-    def __init__(self, bus, folder):
+    def __init__(self, bus, files):
         self.bus = bus
-        self.arrivals = {key_of(line): line for line in lines_of(folder / "arrivals.csv")}
-        self.scans = RecordedScans(folder)
+        self.files = files
         self.stop_reason = ""
         bus.on(nextview.goal_t, self.answer)
         bus.on(nextview.stop_t, lambda stop: setattr(self, "stop_reason", stop.stop_reason))
@@ -105,13 +105,13 @@ class FileDriver:
         print(f"goal of view {goal.view}: ({x:.2f}, {y:.2f}, {z:.2f}) m, pan {goal.pan_rad:.2f}, "
               f"tilt {goal.tilt_rad:.2f} rad: {goal.reason}", flush=True)
         key = goal.view, goal.attempt
-        if key not in self.arrivals:
+        if key not in self.files.arrivals:
             sys.exit(f"the files hold no arrival for view {goal.view}, attempt {goal.attempt}: end the run before, "
                      f"by ./run --views N")
-        arrival = arrival_message(*key, self.arrivals[key])
+        arrival = arrival_message(*key, self.files.arrivals[key])
         self.bus.publish(arrival)
         if arrival.arrived:
-            for part in self.scans.messages(*key):
+            for part in self.files.messages(*key):
                 self.bus.publish(part)
 
     def run(self):
@@ -129,7 +129,11 @@ def main():
     parser.add_argument("folder", metavar="FOLDER", type=pathlib.Path)
     parser.add_argument("--version", action="version", version="%(prog)s " + program_version())
     options = parser.parse_args()
-    FileDriver(Bus(options.lcm_url, options.run, "file_driver"), options.folder).run()
+    try:
+        files = RecordedFiles(options.folder)
+    except OSError as error:
+        sys.exit(f"file_driver.py: {error}")
+    FileDriver(Bus(options.lcm_url, options.run, "file_driver"), files).run()
 
 
 if __name__ == "__main__":

@@ -44,8 +44,10 @@ class FollowedMap:
 
     def counts(self):
         """Voxels by label, and the mean quality of the Occupied ones."""
-        counts = [sum(labels.count(label) for _, labels, _ in self.blocks.values()) for label in range(len(LABELS))]
-        counts[0] = self.window_voxels - sum(counts[1:])  # blocks reach beyond the window; what has none is Unmarked
+        counts = [sum(labels.count(label) for _, labels, _ in self.blocks.values())
+                  for label in range(len(LABELS))]
+        # Blocks reach beyond the window, and what has none is Unmarked.
+        counts[0] = self.window_voxels - sum(counts[1:])
         quality = sum(sum(qualities) for _, _, qualities in self.blocks.values())
         return counts, quality / counts[OCCUPIED] if counts[OCCUPIED] else 0.0
 
@@ -87,7 +89,8 @@ class Follower:
         self.compared += 1
         self.different += not same
         print(f"view {self.map.view}:", *(f"{label} {count}" for label, count in zip(LABELS, counts)),
-              f"quality {quality:.3f}", "as the mapper says" if same else f"but the mapper says {of_mapper}", flush=True)
+              f"quality {quality:.3f}", "as the mapper says" if same else f"but the mapper says {of_mapper}",
+              flush=True)
 
     def run(self):
         """Until the run ends."""

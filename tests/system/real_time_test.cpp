@@ -21,7 +21,7 @@ TEST(RealTime, IsTheSameRunThatTakesItsTime) {
   const TemporaryFolder folder;
   seconds_of({"--no-coverage"}, folder / "at-once");
   const double took_s = seconds_of({"--no-coverage", "--real-time=20"}, folder / "watched");
-  for (const char* column : {"map_digest", "position_x_m", "pan_rad", "path_length_m"}) {
+  for (const char* column : {"map_digest", "x_m", "pan_deg", "simulated_s"}) {
     EXPECT_EQ(column_of_views(folder / "watched", column),
               column_of_views(folder / "at-once", column))
         << column;
