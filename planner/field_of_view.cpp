@@ -24,6 +24,7 @@ double angle_rad(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }  // namespace
 
 bool FieldOfView::contains(const Eigen::Vector3d& direction) const {
+  if (direction.y() < least_ahead) return false;  // most are, and need no angles
   const double azimuth = azimuth_rad(direction);
   const double elevation = elevation_rad(direction);
   return azimuth >= azimuth_min_rad && azimuth <= azimuth_max_rad &&
@@ -32,10 +33,11 @@ bool FieldOfView::contains(const Eigen::Vector3d& direction) const {
 
 FieldOfView field_of_view(const RayTable& rays) {
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  FieldOfView field{kInfinity, -kInfinity, kInfinity, -kInfinity, 0.0};
+  FieldOfView field{kInfinity, -kInfinity, kInfinity, -kInfinity, kInfinity, 0.0};
   for (int v = 0; v < rays.rows(); ++v) {
     for (int u = 0; u < rays.columns(); ++u) {
       const Eigen::Vector3d ray = rays.ray(u, v);
+      field.least_ahead = std::min(field.least_ahead, ray.y() - kTolerance_rad);
       field.azimuth_min_rad = std::min(field.azimuth_min_rad, azimuth_rad(ray) - kTolerance_rad);
       field.azimuth_max_rad = std::max(field.azimuth_max_rad, azimuth_rad(ray) + kTolerance_rad);
       field.elevation_min_rad =

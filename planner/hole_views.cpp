@@ -17,8 +17,9 @@ constexpr std::size_t kAskedOfHole = 12;
 
 class ViewFinder {
  public:
-  ViewFinder(const VoxelMap& map, const ShortestPaths& paths, const HoleViewParameters& parameters)
-      : map_(map), paths_(paths), parameters_(parameters) {}
+  ViewFinder(const FreeSpaceField& field, double voxel_m, const ShortestPaths& paths,
+             const HoleViewParameters& parameters)
+      : field_(field), voxel_m_(voxel_m), paths_(paths), parameters_(parameters) {}
 
   std::optional<HoleView> view_into(const SurfaceHole& hole,
                                     std::span<const VoxelIndex> positions) const;
@@ -26,28 +27,28 @@ class ViewFinder {
   void count_all(HoleView& view, std::span<const SurfaceHole> holes) const;
 
  private:
-  // What a view from a voxel shows of one of a hole; 0 when it is not to be seen from there.
+  // What a view from a voxel shows of one of a hole if nothing lies between; 0 when it is too near,
+  // too far or too flat.
   double gain(const VoxelIndex& from, const HoleVoxel& voxel) const;
   double discount(double path_m) const { return std::exp(-parameters_.path_cost_per_m * path_m); }
   void aim(HoleView& view, const Eigen::Vector3d& direction) const;
   bool is_in_field(const HoleView& view, const Eigen::Matrix3d& sensor_from_world,
                    const VoxelIndex& voxel) const;
 
-  const VoxelMap& map_;
+  const FreeSpaceField& field_;
+  double voxel_m_;
   const ShortestPaths& paths_;
   const HoleViewParameters& parameters_;
 };
 
 double ViewFinder::gain(const VoxelIndex& from, const HoleVoxel& voxel) const {
-  const double voxel_m = map_.grid().voxel_size_m;
-  const Eigen::Vector3d out = voxel_m * (from - voxel.voxel).cast<double>();
+  const Eigen::Vector3d out = voxel_m_ * (from - voxel.voxel).cast<double>();
   const double distance_m = out.norm();
   if (distance_m < parameters_.range_min_m || distance_m > parameters_.range_max_m) return 0.0;
   const bool has_side = !voxel.outward.isZero();
   if (has_side && out.dot(voxel.outward) < parameters_.min_cosine * distance_m) return 0.0;
-  if (!is_in_sight(map_, from, voxel.voxel)) return 0.0;
   // Far away the rays go wider apart than the voxels.
-  const double hit = std::min(1.0, voxel_m / (parameters_.field.spacing_rad * distance_m));
+  const double hit = std::min(1.0, voxel_m_ / (parameters_.field.spacing_rad * distance_m));
   return voxel.trust * hit * hit;
 }
 
@@ -69,28 +70,31 @@ std::optional<HoleView> ViewFinder::view_into(const SurfaceHole& hole,
   const std::size_t step = (hole.voxels.size() + kAskedOfHole - 1) / kAskedOfHole;
   for (std::size_t i = 0; i < hole.voxels.size(); i += step) asked.push_back(&hole.voxels[i]);
   std::optional<HoleView> best;
-  std::vector<std::pair<const HoleVoxel*, double>> seen;
+  std::vector<double> shown(asked.size());
   for (const VoxelIndex& position : positions) {
-    seen.clear();
+    double most = 0.0;
+    for (std::size_t i = 0; i < asked.size(); ++i) most += shown[i] = gain(position, *asked[i]);
+    const double path_m = paths_.length_m(position);
+    // Most positions need not be looked from.
+    if (most * discount(path_m) <= (best ? best->score : 0.0)) continue;
     Eigen::Vector3d middle = Eigen::Vector3d::Zero();
-    for (const HoleVoxel* voxel : asked) {
-      const double shown = gain(position, *voxel);
-      if (shown <= 0.0) continue;
-      seen.emplace_back(voxel, shown);
-      middle += shown * (voxel->voxel - position).cast<double>();
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      if (shown[i] <= 0.0) continue;
+      if (!is_in_sight(field_, position, asked[i]->voxel)) shown[i] = 0.0;
+      middle += shown[i] * (asked[i]->voxel - position).cast<double>();
     }
-    if (seen.empty()) continue;
     HoleView view;
     view.voxel = position;
-    view.path_m = paths_.length_m(position);
+    view.path_m = path_m;
     aim(view, middle);
     const Eigen::Matrix3d sensor_from_world =
         world_from_sensor_rotation(view.pan_rad, view.tilt_rad).transpose();
-    for (const auto& [voxel, shown] : seen) {
-      if (is_in_field(view, sensor_from_world, voxel->voxel)) view.gain_voxels += shown;
+    for (std::size_t i = 0; i < asked.size(); ++i) {
+      if (shown[i] <= 0.0 || !is_in_field(view, sensor_from_world, asked[i]->voxel)) continue;
+      view.gain_voxels += shown[i];
     }
-    view.score = view.gain_voxels * discount(view.path_m);
-    if (view.score > 0.0 && (!best || view.score > best->score)) best = view;
+    view.score = view.gain_voxels * discount(path_m);
+    if (view.score > (best ? best->score : 0.0)) best = view;
   }
   return best;
 }
@@ -101,9 +105,9 @@ void ViewFinder::count_all(HoleView& view, std::span<const SurfaceHole> holes) c
   view.gain_voxels = 0.0;
   for (const SurfaceHole& hole : holes) {
     for (const HoleVoxel& voxel : hole.voxels) {
-      if (!is_in_field(view, sensor_from_world, voxel.voxel)) continue;
       const double shown = gain(view.voxel, voxel);
-      if (shown <= 0.0) continue;
+      if (shown <= 0.0 || !is_in_field(view, sensor_from_world, voxel.voxel)) continue;
+      if (!is_in_sight(field_, view.voxel, voxel.voxel)) continue;
       view.gain_voxels += shown;
       view.in_sight.push_back(&voxel);
     }
@@ -123,19 +127,22 @@ void HoleViewParameters::check() const {
   if (!(field.spacing_rad > 0.0)) throw std::invalid_argument("the field of view has no rays");
 }
 
-bool is_in_sight(const VoxelMap& map, const VoxelIndex& from, const VoxelIndex& to) {
+bool is_in_sight(const FreeSpaceField& field, const VoxelIndex& from, const VoxelIndex& to) {
   const IntegerLine line = line_between(from, to);
-  for (int k = 1; k < line.steps; ++k) {
-    if (map.label(line.at(k)) != Label::Empty) return false;
+  for (int k = field.steps_from(from); k < line.steps;) {
+    const int free = field.free_distance(line.at(k));
+    if (free == 0) return false;
+    k += free;
   }
   return true;
 }
 
-std::vector<HoleView> hole_views(const VoxelMap& map, std::span<const SurfaceHole> holes,
-                                 const ShortestPaths& paths, std::span<const VoxelIndex> positions,
+std::vector<HoleView> hole_views(const FreeSpaceField& field, double voxel_m,
+                                 std::span<const SurfaceHole> holes, const ShortestPaths& paths,
+                                 std::span<const VoxelIndex> positions,
                                  const HoleViewParameters& parameters) {
   parameters.check();
-  const ViewFinder finder(map, paths, parameters);
+  const ViewFinder finder(field, voxel_m, paths, parameters);
   std::vector<HoleView> views;
   for (std::size_t i = 0; i < holes.size(); ++i) {
     if (auto view = finder.view_into(holes[i], positions)) {

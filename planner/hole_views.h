@@ -5,8 +5,8 @@
 #include <span>
 #include <vector>
 
-#include "mapper/voxel_map.h"
 #include "planner/field_of_view.h"
+#include "planner/prediction/free_space_field.h"
 #include "planner/shortest_paths.h"
 #include "planner/surface_holes.h"
 #include "sensor/sensor_pose.h"
@@ -40,19 +40,23 @@ struct HoleView {
 };
 
 /// Whether nothing but known free space lies between two voxels, on the line of a ray from one to
-/// the other.
-bool is_in_sight(const VoxelMap& map, const VoxelIndex& from, const VoxelIndex& to);
+/// the other. Both inside the field's window.
+bool is_in_sight(const FreeSpaceField& field, const VoxelIndex& from, const VoxelIndex& to);
 
 /// Computes for every hole the view into it (P24): from the positions that are offered the one, and
 /// aimed at the middle of what is to be seen of the hole from there, that shows most of it for the
 /// way there. A voxel of a hole is to be seen when it lies within the sensor's range, it is not met
 /// at too flat an angle, and it is in sight through the map. What such a view shows of other holes
 /// counts too.
-/// @param positions with paths, as ShortestPaths::reached() has them
+/// @param field of the map the holes are of
+/// @param voxel_m the side of its voxels
+/// @param positions with paths, as ShortestPaths::reached() has them; with the nearest first it
+///        takes the least time
 /// @return the best first; holes that cannot be looked into from any of the positions are left out
 /// @throws std::invalid_argument for parameters that cannot be
-std::vector<HoleView> hole_views(const VoxelMap& map, std::span<const SurfaceHole> holes,
-                                 const ShortestPaths& paths, std::span<const VoxelIndex> positions,
+std::vector<HoleView> hole_views(const FreeSpaceField& field, double voxel_m,
+                                 std::span<const SurfaceHole> holes, const ShortestPaths& paths,
+                                 std::span<const VoxelIndex> positions,
                                  const HoleViewParameters& parameters);
 
 }  // namespace nextview

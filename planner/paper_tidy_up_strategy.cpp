@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <stdexcept>
 #include <utility>
@@ -16,7 +17,7 @@ namespace nextview {
 
 namespace {
 
-constexpr int kCoarsest = 4;  // spacing of positions, voxels
+constexpr double kCoarsest_m = 0.4;  // spacing of positions
 /// Of the views computed so many are told, at most: what was tried for a goal has to fit one
 /// message.
 constexpr std::size_t kMostTried = 1200;
@@ -159,10 +160,12 @@ std::optional<Decision> PaperTidyUpStrategy::tidy_up(const Situation& situation)
   paths_.find(*clear_, map, situation.present.position_m, parameters_.feasibility.departure_m);
   const std::vector<SurfaceHole> holes = trusted_holes(map);
   const VoxelIndex present = map.grid().voxel_of(situation.present.position_m);
-  for (int spacing = kCoarsest; spacing >= 1; spacing /= 2) {
+  const auto coarsest = static_cast<unsigned>(std::lround(kCoarsest_m / voxel_size_m_));
+  for (int spacing = static_cast<int>(std::bit_floor(std::max(coarsest, 1U))); spacing >= 1;
+       spacing /= 2) {
     const PositionLattice positions(paths_, present, VoxelIndex::Zero(), spacing);
-    const std::vector<HoleView> views =
-        hole_views(map, holes, paths_, positions.voxels, parameters_.view);
+    const std::vector<HoleView> views = hole_views(situation.space.field(), voxel_size_m_, holes,
+                                                   paths_, positions.voxels, parameters_.view);
     if (!views.empty()) return decision(situation, views);
   }
   return std::nullopt;

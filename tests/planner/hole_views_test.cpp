@@ -4,9 +4,11 @@
 
 #include <cmath>
 #include <numbers>
+#include <random>
 #include <stdexcept>
 #include <vector>
 
+#include "mapper/integer_line.h"
 #include "sensor/sensor_geometry.h"
 
 namespace nextview {
@@ -24,7 +26,12 @@ class RoomWithHoles : public ::testing::Test {
       const bool wall = (v.array() == 0).any() || v[0] == 20 || v[1] == 19 || v[2] == 11;
       map.set_label(v, wall ? Label::Occupied : Label::Empty);
     });
-    parameters.field = {-30.0 * kDegree, 30.0 * kDegree, -20.0 * kDegree, 20.0 * kDegree, kDegree};
+    parameters.field = {.azimuth_min_rad = -30.0 * kDegree,
+                        .azimuth_max_rad = 30.0 * kDegree,
+                        .elevation_min_rad = -20.0 * kDegree,
+                        .elevation_max_rad = 20.0 * kDegree,
+                        .least_ahead = 0.5,
+                        .spacing_rad = kDegree};
   }
 
   void make_hole(int i) {
@@ -37,7 +44,7 @@ class RoomWithHoles : public ::testing::Test {
     ShortestPaths paths;
     paths.find(clear, map, map.grid().center_m({10, 3, 6}), 0.3);
     holes = surface_holes(map, 10);
-    return hole_views(map, holes, paths, positions, parameters);
+    return hole_views(FreeSpaceField(map), 0.1, holes, paths, positions, parameters);
   }
 
   VoxelMap map;
@@ -155,8 +162,9 @@ TEST_F(RoomWithHoles, SparseRaysAndDistrustCountLess) {
   paths.find(clear, map, map.grid().center_m({10, 3, 6}), 0.3);
   holes[0].voxels[0].trust = 0.25;
   const std::vector<VoxelIndex> positions = {{10, 5, 6}};
-  EXPECT_NEAR(hole_views(map, holes, paths, positions, parameters)[0].gain_voxels, 0.25 / 1.96,
-              1e-12);
+  EXPECT_NEAR(
+      hole_views(FreeSpaceField(map), 0.1, holes, paths, positions, parameters)[0].gain_voxels,
+      0.25 / 1.96, 1e-12);
 }
 
 TEST_F(RoomWithHoles, ParametersThatCannotBeAreNamed) {
@@ -171,6 +179,44 @@ TEST_F(RoomWithHoles, ParametersThatCannotBeAreNamed) {
   refused([](HoleViewParameters& p) { p.min_cosine = 1.0; });
   refused([](HoleViewParameters& p) { p.path_cost_per_m = -1.0; });
   refused([](HoleViewParameters& p) { p.field = {}; });
+}
+
+// The line voxel by voxel.
+bool is_in_sight_plainly(const VoxelMap& map, const VoxelIndex& from, const VoxelIndex& to) {
+  const IntegerLine line = line_between(from, to);
+  for (int k = 1; k < line.steps; ++k) {
+    if (map.label(line.at(k)) != Label::Empty) return false;
+  }
+  return true;
+}
+
+TEST(Sight, IsThatOfThePlainLineInRandomWorlds) {
+  std::mt19937 random(1);
+  int clear = 0;
+  int blocked = 0;
+  for (int world = 0; world < 50; ++world) {
+    VoxelMap map({0.1, Eigen::Vector3d::Zero()}, {VoxelIndex(-3, 2, 5), VoxelIndex(25, 20, 15)});
+    for_each_voxel(map.window(), [&](const VoxelIndex& v) {
+      map.set_label(v, random() % 60 == 0 ? static_cast<Label>(random() % 5) : Label::Empty);
+    });
+    const FreeSpaceField field(map);
+    const auto any = [&] {
+      VoxelIndex voxel = map.window().min;
+      for (int axis = 0; axis < 3; ++axis) {
+        voxel[axis] += static_cast<int>(random() % static_cast<unsigned>(map.window().size[axis]));
+      }
+      return voxel;
+    };
+    for (int line = 0; line < 400; ++line) {
+      const VoxelIndex from = any();
+      const VoxelIndex to = any();
+      const bool expected = is_in_sight_plainly(map, from, to);
+      ASSERT_EQ(is_in_sight(field, from, to), expected);
+      ++(expected ? clear : blocked);
+    }
+  }
+  EXPECT_GT(clear, 2000);
+  EXPECT_GT(blocked, 2000);
 }
 
 TEST(FieldOfViewOf, ATiltedLineScanIsItsApertures) {

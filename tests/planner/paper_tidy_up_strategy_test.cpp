@@ -126,6 +126,7 @@ std::size_t holes_in_sight(const World& world, const VoxelMap& map, const Sensor
   const ClearSpace clear(map, world.search.feasibility);
   ShortestPaths paths;
   paths.find(clear, map, pose.position_m, world.search.feasibility.departure_m);
+  const FreeSpaceField field(map);
   std::size_t voxels = 0;
   for (const SurfaceHole& hole : surface_holes(map, 10)) {
     for (const HoleVoxel& voxel : hole.voxels) {
@@ -133,7 +134,7 @@ std::size_t holes_in_sight(const World& world, const VoxelMap& map, const Sensor
         const Eigen::Vector3d out = (from - voxel.voxel).cast<double>();
         const double least = world.tidy_up.view.min_cosine * out.norm();
         if (!voxel.outward.isZero() && out.dot(voxel.outward) < least) continue;
-        if (!is_in_sight(map, from, voxel.voxel)) continue;
+        if (!is_in_sight(field, from, voxel.voxel)) continue;
         ++voxels;
         break;
       }
