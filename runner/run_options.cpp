@@ -156,7 +156,7 @@ void add_run_options(CLI::App& app, RunOptions& options) {
                "For watching: motions and scans take the time they simulate, see --base-speed, "
                "--turn-speed, --scan-duration; --real-time=8 eight times as fast. The run is the "
                "same")
-      ->check(number_in(0.001, 1e6))
+      ->check(number_within(bounds::kRealTime))
       ->group(group);
   app.add_option("--cache", options.cache,
                  "Folder that keeps what can be seen of a scene, which takes minutes in a large "

@@ -15,6 +15,7 @@
 #include <set>
 #include <sstream>
 #include <string>
+#include <tuple>
 #include <vector>
 
 #include "base_sim/base.h"
@@ -46,7 +47,8 @@ struct Row {
   SetMessage message;  ///< empty: no message carries it
   InLibrary library;   ///< empty: no library reads it
   double typed = 1.0;  ///< of an option's unit there are so many in the message's
-  /// Typed, with what must come before and after; the value where there is an @.
+  /// Typed, with what must come before and after; the value where there is an @. What begins with =
+  /// belongs to the word before it.
   std::vector<std::string> words = {"@"};
   bool whole = false;
   /// The option is text that only the set-up of a run reads.
@@ -346,6 +348,19 @@ std::vector<Row> rows() {
        }});
   add({"kDeparture", kDeparture, "--later-departure", planner(&planner_config_t::later_departure_m),
        [](double v) { checked<SurfaceParameters>([v](auto& p) { p.departure_m = v; }); }});
+  for (const auto& [option, field, factor] :
+       {std::tuple("--structure-weight", &planner_config_t::structure_weight, kStructureFactor),
+        std::tuple("--navigation-weight", &planner_config_t::navigation_weight,
+                   kNavigationFactor)}) {
+    add({"kFactorWeight", kFactorWeight, option,
+         [field](run_config_t& m, double v) {
+           m.strategy = PaperStrategy::kFacts.name;
+           m.planner.*field = v;
+         },
+         [factor](double v) {
+           checked<PlannerParameters>([=](auto& p) { p.weights[factor] = v; });
+         }});
+  }
   add({"kQualityThreshold", kQualityThreshold, "--quality-threshold",
        planner(&planner_config_t::quality_threshold),
        [](double v) { checked<StopParameters>([v](auto& p) { p.quality_threshold = v; }); }});
@@ -371,6 +386,7 @@ std::vector<Row> rows() {
 
   add({"kMarginVoxels", kMarginVoxels, "--margin-voxels", {}, {}, 1.0, {"@"}, true});
   add({"kPatience", kPatience, "--patience", {}, {}});
+  add({"kRealTime", kRealTime, "--real-time", {}, {}, 1.0, {"=@"}});
   add({"kBoundSpacing", kBoundSpacing, "--bound-spacing", {}, [](double v) {
          checked<PoseParameters>([v](auto& p) { p.spacing_m = v; });
        }});
@@ -384,7 +400,11 @@ std::string refusal_of_options(const Row& row, double value) {
   const std::string typed = fmt::format("{}", value * row.typed);
   for (std::string word : row.words) {
     if (const std::size_t at = word.find('@'); at != std::string::npos) word.replace(at, 1, typed);
-    arguments.push_back(word);
+    if (word.starts_with('=')) {
+      arguments.back() += word;
+    } else {
+      arguments.push_back(word);
+    }
   }
   std::vector<char*> argv;
   for (std::string& argument : arguments) argv.push_back(argument.data());
