@@ -125,7 +125,7 @@ std::pair<nextview::RangeImage, std::int64_t> RecordedFiles::scan(int view, int 
   image.pose = scan.pose;
   image.position_m = scan.pose.position_m;
   image.world_from_sensor = scan.world_from_sensor;
-  image.rays = rays_;
+  image.rays = nextview::table_of_picture(rays_);
   image.limits = limits_;
   image.range_m.resize(rays_.column_sin.size() * rays_.row_sin.size());
   const auto bytes = static_cast<std::streamsize>(image.range_m.size() * sizeof(float));
@@ -133,6 +133,10 @@ std::pair<nextview::RangeImage, std::int64_t> RecordedFiles::scan(int view, int 
   if (!stream.read(reinterpret_cast<char*>(image.range_m.data()), bytes)) {
     throw std::runtime_error((folder_ / scan.file).string() + ": does not hold " +
                              std::to_string(image.range_m.size()) + " floats");
+  }
+  // A sensor whose lines stand upright keeps its image turned, see sensor/ray_table.h.
+  if (nextview::has_upright_lines(rays_.kind)) {
+    image.range_m = nextview::transposed(image.range_m, rays_.column_sin.size());
   }
   return {image, scan.utime};
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "sensor/range_image.h"
+#include "sensor/range_picture.h"
 
 /// What a robot and its sensor have left in a folder; docs/own-sensor.md says what the files hold.
 struct RecordedArrival {
@@ -46,7 +47,7 @@ class RecordedFiles {
     std::string file;  // of the ranges
   };
   std::filesystem::path folder_;
-  nextview::RayTable rays_;
+  nextview::PictureRays rays_;
   nextview::RangeLimits limits_;
   std::map<ViewAndAttempt, RecordedArrival> arrivals_;
   std::map<ViewAndAttempt, Scan> scans_;

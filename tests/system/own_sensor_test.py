@@ -32,7 +32,9 @@ class Examples(unittest.TestCase):
         subprocess.run(["lcm-gen", "-p", "--ppath", cls.folder / "types", *(ROOT / "lcmtypes").glob("*.lcm")],
                        check=True, stdout=subprocess.DEVNULL)
         cls.python = {**os.environ, "PYTHONPATH": str(cls.folder / "types"), "PYTHONDONTWRITEBYTECODE": "1"}
-        cls.run_whole(cls, "recorded", ["boxes"])
+        cls.run_whole(cls, "recorded", ["boxes", "--views", str(VIEWS)])
+        # Whose images travel in parts.
+        cls.run_whole(cls, "panorama", ["boxes", "--sensor", "panorama", "--views", "2"])
 
     @classmethod
     def tearDownClass(cls):
@@ -55,7 +57,7 @@ class Examples(unittest.TestCase):
 
     @staticmethod
     def run_whole(cls, out, words):
-        subprocess.run([PROGRAMS / "nextview_run", *words, "--views", str(VIEWS), "--no-coverage", "--out",
+        subprocess.run([PROGRAMS / "nextview_run", *words, "--no-coverage", "--out",
                         cls.folder / out], check=True, stdout=subprocess.DEVNULL)
 
     def end(self, run):
@@ -64,26 +66,32 @@ class Examples(unittest.TestCase):
         self.assertEqual(run.wait(), 0, said)
 
     def test_drivers_from_files_give_the_recorded_run(self):
-        files = self.folder / "files"
-        command = subprocess.run([*self.example("log_to_files.py"), self.folder / "recorded" / "run.lcmlog", files],
+        self.drive_from_files_of("recorded", VIEWS)
+
+    def test_images_in_parts_are_put_together_again(self):
+        self.drive_from_files_of("panorama", 2)
+
+    def drive_from_files_of(self, recorded, views):
+        files = self.folder / (recorded + "-files")
+        command = subprocess.run([*self.example("log_to_files.py"), self.folder / recorded / "run.lcmlog", files],
                                  env=self.python, check=True, capture_output=True, text=True).stdout
         self.assertTrue(command.startswith("./run --without sensor_sim,base_sim "), command)
         words = shlex.split(command)[1:]
-        self.assertIn(f"--views {VIEWS}", command)
-        digests = column(self.folder / "recorded", "map_digest")
-        self.assertEqual(len(digests), VIEWS)
+        self.assertIn(f"--views {views}", command)
+        digests = column(self.folder / recorded, "map_digest")
+        self.assertEqual(len(digests), views)
         drivers = {"cpp": [PROGRAMS / "file_driver"], "python": self.example("file_driver.py")}
         for name, driver in drivers.items():
             with self.subTest(driver=name):
-                run, bus = self.start(name, words)
+                run, bus = self.start(f"{recorded}-{name}", words)
                 driven = subprocess.run([*driver, *bus, files], env=self.python, capture_output=True, text=True)
                 self.end(run)
                 self.assertEqual(driven.returncode, 0, driven.stderr)
                 goals = re.findall(r"^goal of view (\d+): \(", driven.stdout, re.M)
-                self.assertEqual(goals, [str(view) for view in range(1, VIEWS + 1)])
+                self.assertEqual(goals, [str(view) for view in range(1, views + 1)])
                 self.assertIn("the run has ended: view_limit", driven.stdout)
-                self.assertEqual(column(self.folder / name, "map_digest"), digests)
-                subprocess.run([PROGRAMS / "nextview_replay", self.folder / name, "--planner"], check=True,
+                self.assertEqual(column(self.folder / f"{recorded}-{name}", "map_digest"), digests)
+                subprocess.run([PROGRAMS / "nextview_replay", self.folder / f"{recorded}-{name}", "--planner"], check=True,
                                stdout=subprocess.DEVNULL)
 
     def test_a_driver_without_the_files_it_needs_says_so(self):
