@@ -277,13 +277,20 @@ class Replay {
 
   /// Messages that nothing above has looked at.
   void tell_what_is_left(int views) {
-    const bool early = record_.ends_early();
     for (const MissingMessage& held : record_.held()) {
-      if (accounted_.contains(held)) continue;
-      const std::string line = describe(held) + " is there, and nothing in the run led to it";
-      const bool under_way = early && held.view == views + 1;
-      (under_way ? report_.remarks : report_.differences).push_back(line);
+      if (!accounted_.contains(held)) tell_of(held, describe(held) + " is there", views);
     }
+    for (const MissingMessage& held : record_.held_in_part()) {
+      const bool is_missed = held.view <= views && held.attempt == record_.final_attempt(held.view);
+      if (!is_missed) tell_of(held, describe(held) + " is there in part", views);
+    }
+  }
+
+  /// A message that the run does not account for; no fault of a view that was under way.
+  void tell_of(const MissingMessage& held, const std::string& what, int views) {
+    const bool under_way = record_.ends_early() && held.view == views + 1;
+    (under_way ? report_.remarks : report_.differences)
+        .push_back(what + ", and nothing in the run led to it");
   }
 
   const RunLog& log_;

@@ -88,6 +88,8 @@ class RunRecord {
   int final_attempt(int view) const;
   /// Every goal, search, arrival, whole range image and commit that is here.
   std::vector<MissingMessage> held() const;
+  /// Range images of which some parts are here, and some are not.
+  std::vector<MissingMessage> held_in_part() const;
 
  private:
   void check_fits(int view, int attempt) const;

@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "logger/unchecked_fields.h"
+#include "sensor/range_image_message.h"
 #include "tests/logger/recorded_run.h"
 
 namespace nextview {
@@ -203,6 +204,45 @@ TEST(Replay, FindsMessagesThatNothingLedTo) {
     log.emplace_back(channel, encode(goal));
   }
   expect_status(log, 1, "NEXTVIEW_GOAL of view 2, attempt 3 is there, and nothing in the run led");
+}
+
+/// The recording with all but the last part of an image, as if it were of that view and attempt.
+Recording with_part_of_an_image(Recording recording, int view, int attempt) {
+  const RunLog log = log_of(recorded());
+  auto parts = range_image_messages(log.record().range_image(4, 1)->image, view, attempt, 0, 512);
+  parts.pop_back();
+  EXPECT_FALSE(parts.empty());
+  for (range_image_t& part : parts) {
+    part.run = log.record().config()->run;
+    recording.emplace_back(Channel<range_image_t>::name, encode(part));
+  }
+  return recording;
+}
+
+TEST(Replay, NamesAnImageOfWhichSomePartsAreThere) {
+  expect_status(
+      with_part_of_an_image(recorded(), 4, 3), 1,
+      "NEXTVIEW_RANGE_IMAGE of view 4, attempt 3 is there in part, and nothing in the run "
+      "led to it");
+  // Of a view that was taken it is what is missing.
+  expect_status(with_part_of_an_image(
+                    without<range_image_t>(
+                        recorded(), [](const range_image_t& part) { return part.view == 4; }),
+                    4, 1),
+                3, "the log lacks NEXTVIEW_RANGE_IMAGE of view 4, attempt 1");
+}
+
+TEST(Replay, NamesPartsOfAnImageBeyondTheEnd) {
+  Recording log = without<goal_t>(recorded(), [](const goal_t& goal) { return goal.view > 3; });
+  log = without<search_t>(log, [](const search_t& search) { return search.view > 3; });
+  log = without<arrival_t>(log, [](const arrival_t& arrival) { return arrival.view > 3; });
+  log = without<range_image_t>(log, [](const range_image_t& part) { return part.view > 3; });
+  log = without<commit_t>(log, [](const commit_t& commit) { return commit.view > 3; });
+  const std::string words = "NEXTVIEW_RANGE_IMAGE of view 4, attempt 1 is there in part";
+  // The view under way when a run is broken off.
+  expect_status(with_part_of_an_image(ended_by("interrupted", 3, log), 4, 1), 0, words);
+  // After the planner's own end nothing of a view is left to come.
+  expect_status(with_part_of_an_image(ended_by("nothing_new", 3, log), 4, 1), 1, words);
 }
 
 TEST(Replay, FindsAnEndForAReasonThatDoesNotHold) {
