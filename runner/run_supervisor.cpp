@@ -205,12 +205,14 @@ void RunSupervisor::complete_log() {
   bus_->request<status_t>(0, 0);
   AskTimer reminder = reminder_after(milliseconds(20));
   heard_.last_progress = Clock::now();
+  std::vector<MissingMessage> had_missing;
   for (;;) {
-    const std::int64_t had = log_->counters().ours;
     log_->read_on();
     const std::vector<MissingMessage> missing = log_->record().missing();
     if (missing.empty()) return;
-    if (log_->counters().ours != had) heard_.last_progress = Clock::now();
+    // What is asked for is recorded too: the log grows, and is none the better for it.
+    if (missing != had_missing) heard_.last_progress = Clock::now();
+    had_missing = missing;
     if (reminder.due()) {
       for (const MissingMessage& message : missing) request(*bus_, message);
     }

@@ -72,6 +72,33 @@ TEST(BusTrouble, WhatTheRecorderMissedIsAskedForAgain) {
   EXPECT_EQ(replay.status, 0) << replay.output;
 }
 
+// The run asks for it again and again, and its requests are recorded: the log grows, and is none
+// the better for it.
+TEST(BusTrouble, ARecorderThatNeverWritesAMessageIsNotWaitedForForEver) {
+  const TemporaryFolder folder;
+  std::filesystem::create_symlink(program_path("forgetful_recorder"), folder / "lcm-logger");
+  std::vector<std::string> arguments = {"/usr/bin/env", "PATH=" + folder.path().string(),
+                                        "NEXTVIEW_NEVER_RECORDED=NEXTVIEW_SEARCH"};
+  for (const std::string& argument : run_arguments(folder / "run", 3, {"--patience", "3"})) {
+    arguments.push_back(argument);
+  }
+  const Outcome outcome = run_program(arguments);
+  EXPECT_EQ(outcome.status, 5) << outcome.output;
+  EXPECT_NE(outcome.output.find("nextview_run: no_answer: the log still lacks NEXTVIEW_SEARCH of "
+                                "view 2, attempt 1, however often it was asked for"),
+            std::string::npos)
+      << outcome.output;
+  const auto summary = summary_of(folder / "run");
+  EXPECT_EQ(summary.at("stop_reason"), "no_answer");
+  EXPECT_EQ(summary.at("views"), 3);
+  EXPECT_EQ(column_of_views(folder / "run", "view").size(), 3U);
+  const Outcome replay = replay_folder(folder / "run");
+  EXPECT_EQ(replay.status, 3) << replay.output;
+  EXPECT_NE(replay.output.find("the log lacks NEXTVIEW_SEARCH of view 2, attempt 1"),
+            std::string::npos)
+      << replay.output;
+}
+
 /// The number of a run that was started with --verbose.
 std::int64_t number_of(Program& run) {
   static constexpr std::string_view kBefore = ", run ";
