@@ -29,6 +29,7 @@ class Replay {
       : log_(log),
         record_(log.record()),
         config_(*record_.config()),
+        simulated_(simulated_in(record_)),
         options_(options),
         planner_(make_view_planner(config_)) {}
 
@@ -99,7 +100,7 @@ class Replay {
       agree(
           *arrival,
           expected_arrival(*arrival, *goal, arrived, present_.pose.value_or(start_pose_of(config_)),
-                           is_simulated(config_) && (arrived || present_.pose || view == 1)),
+                           simulated_.base && (arrived || present_.pose || view == 1)),
           name);
     }
     if (!arrived) present_.utime = arrival->utime;
@@ -169,7 +170,8 @@ class Replay {
     const MissingMessage name = account_for<range_image_t>(received.view, received.attempt);
     const arrival_t* arrival = record_.arrival(received.view, received.attempt);
     if (!arrival) return;
-    for (const std::string& what : contradictions_of(received, *arrival, config_)) {
+    for (const std::string& what :
+         contradictions_of(received, *arrival, config_, simulated_.sensor)) {
       report_.differences.push_back(describe(name) + ": " + what);
     }
   }
@@ -296,6 +298,7 @@ class Replay {
   const RunLog& log_;
   const RunRecord& record_;
   const run_config_t& config_;
+  Simulated simulated_;
   ReplayOptions options_;
   std::unique_ptr<ViewPlanner> planner_;
   ReplayReport report_;

@@ -117,6 +117,52 @@ TEST(Replay, FindsPosesMovedByAMetre) {
   expect_status(all, 1, "history_digest");
 }
 
+/// As a robot of one's own says it, which computes in 32 bits and drives as well as it can.
+void drive_nearly_there(arrival_t& arrival) {
+  for (int axis = 0; axis < 3; ++axis) {
+    arrival.true_position_m[axis] += 0.001;
+    arrival.believed_position_m[axis] = static_cast<float>(arrival.believed_position_m[axis]);
+  }
+  arrival.believed_pan_rad = static_cast<float>(arrival.believed_pan_rad);
+  arrival.believed_tilt_rad = static_cast<float>(arrival.believed_tilt_rad);
+  arrival.path_length_m += 0.01;
+}
+
+TEST(Replay, BelievesADriverInThePlaceOfBaseAndSensor) {
+  const Recording own_base = with_driver_for("base_sim", recorded());
+  const Recording own_sensor = with_driver_for("sensor_sim", recorded());
+  const Recording own = with_driver_for("sensor_sim", own_base);
+  for (const Recording& recording : {own_base, own_sensor, own}) {
+    EXPECT_EQ(replayed(recording).exit_status(), 0) << lines_of(replayed(recording));
+  }
+  EXPECT_EQ(replayed(changed<arrival_t>(own, drive_nearly_there)).exit_status(), 0)
+      << lines_of(replayed(changed<arrival_t>(own, drive_nearly_there)));
+  // Whoever is there is held to what is known of him.
+  expect_status(changed<arrival_t>(own_base, drive_nearly_there), 1,
+                "its pose is not the one the robot arrived at");
+  expect_status(changed<arrival_t>(own_sensor, drive_nearly_there), 1,
+                "NEXTVIEW_ARRIVAL of view 2, attempt 1 differs in true_position_m");
+  expect_status(
+      changed<arrival_t>(own, [](arrival_t& arrival) { arrival.believed_position_m[0] += 1e-4; }),
+      1, "its pose is not the one the robot arrived at");
+}
+
+TEST(Replay, SaysWhomItHasBelieved) {
+  const auto unchecked = [](const Recording& recording, std::string_view channel,
+                            const std::string& field) {
+    return is_unchecked(unchecked_fields(log_of(recording).record(), true), channel, field);
+  };
+  const Recording own_base = with_driver_for("base_sim", recorded());
+  const Recording own_sensor = with_driver_for("sensor_sim", recorded());
+  EXPECT_FALSE(unchecked(recorded(), "NEXTVIEW_ARRIVAL", "path_length_m"));
+  EXPECT_TRUE(unchecked(own_base, "NEXTVIEW_ARRIVAL", "path_length_m"));
+  EXPECT_FALSE(unchecked(own_sensor, "NEXTVIEW_ARRIVAL", "path_length_m"));
+  EXPECT_FALSE(unchecked(recorded(), "NEXTVIEW_ARRIVAL", "believed_pan_rad"));
+  EXPECT_TRUE(unchecked(own_sensor, "NEXTVIEW_ARRIVAL", "believed_pan_rad"));
+  EXPECT_FALSE(unchecked(own_base, "NEXTVIEW_RUN_CONFIG", "sensor.range_max_m"));
+  EXPECT_TRUE(unchecked(own_sensor, "NEXTVIEW_RUN_CONFIG", "sensor.range_max_m"));
+}
+
 TEST(Replay, FindsArrivalsThatWereRefused) {
   const auto log = changed<arrival_t>(recorded(), [](arrival_t& arrival) {
     arrival.arrived = 0;
