@@ -72,13 +72,30 @@ configure() {
   echo "${options[*]}" > "$done_with"
 }
 
-# build_target TARGET: says nothing when it is up to date.
+# build_target TARGET: says nothing when it is up to date. ninja's dry run cannot tell that, since each build
+# looks for new files and asks for the commit first; so what ninja says of these two is left out.
 build_target() {
-  if ninja -C "$build" -n "$1" 2> /dev/null | grep -q 'no work to do'; then
-    return
-  fi
-  echo "Building nextview in $build (the first time takes some minutes)"
-  ninja -C "$build" "$1" || fail "The build failed."
+  ninja -C "$build" "$1" 2>&1 | show_build || fail "The build failed." # whoever sources this has set pipefail
+}
+
+# show_build: what ninja says; on a terminal its steps on one line, as it does itself.
+show_build() {
+  local line said='' clear='' columns
+  columns=$(tput cols 2> /dev/null || echo 80)
+  if [ -t 1 ]; then clear=$'\r\e[K'; fi
+  while IFS= read -r line; do
+    case "$line" in
+      *'Entering directory'* | *'Re-checking globbed'* | *write_program_version* | *'no work to do'*) continue ;;
+    esac
+    [ -n "$said" ] || echo "Building nextview in $build (the first time takes some minutes)"
+    said=yes
+    if [ -n "$clear" ] && [[ "$line" == '['* ]]; then
+      printf '%s%.*s' "$clear" "$((columns - 1))" "$line"
+    else
+      printf '%s%s\n' "$clear" "$line"
+    fi
+  done
+  printf '%s' "$clear"
 }
 
 # set_up_programs: what ./run and ./replay need.

@@ -1,7 +1,7 @@
 #!/bin/bash
-# Whether .ci/set-up.sh waits for another apt, and says so: set_up_test.sh REPOSITORY. apt works in a folder
-# of its own here, without a source, so that nothing is fetched or installed, and who runs this needs no
-# rights. 77: there is no apt.
+# Whether .ci/set-up.sh says nothing when nothing is to be built, and whether it waits for another apt, and
+# says so: set_up_test.sh REPOSITORY. apt works in a folder of its own here, without a source, so that nothing
+# is fetched or installed, and who runs this needs no rights. 77: there is no apt.
 set -euo pipefail
 repository=$1
 command -v apt-get > /dev/null && command -v perl > /dev/null || exit 77
@@ -46,6 +46,31 @@ install() {
   ) > "$folder/said" 2>&1 && die "a package that is not there was installed"
   return 0
 }
+
+# build: as ./run would, where ninja says the lines of $folder/ninja-says and ends with status $1.
+build() {
+  printf '#!/bin/sh\ncat "%s/ninja-says"\nexit %s\n' "$folder" "$1" > "$folder/bin/ninja"
+  chmod +x "$folder/bin/ninja"
+  (
+    root=$folder
+    source "$repository/.ci/set-up.sh"
+    build_target programs
+  ) > "$folder/said" 2>&1
+}
+
+cat > "$folder/ninja-says" << 'END'
+ninja: Entering directory `build/release'
+[0/2] Re-checking globbed directories...
+[1/34] cd build/release/lcmtypes && /usr/bin/cmake -DVERSION=0.2 -P lcmtypes/write_program_version.cmake
+END
+build 0
+[ ! -s "$folder/said" ] || die "something is said though nothing is to be built"
+echo '[2/34] Building CXX object bus.cpp.o' >> "$folder/ninja-says"
+build 0
+[ "$(grep -c . "$folder/said")" = 2 ] && grep -q 'Building nextview in' "$folder/said" ||
+  die "not said that it builds"
+build 1 && die "a build that fails is taken for a good one"
+grep -q 'The build failed' "$folder/said" || die "not said that the build has failed"
 
 install 5
 grep -q 'Unable to locate package' "$folder/said" || die "apt was not asked"
