@@ -17,6 +17,7 @@ std::vector<UncheckedFields> unchecked_fields(const RunRecord& run, bool planner
       {kForPeople, Channel<timing_t>::name, {"*"}},
       {kForPeople, Channel<status_t>::name, {"*"}},
       {kForPeople, Channel<request_t>::name, {"*"}},
+      {kForPeople, Channel<pace_t>::name, {"*"}},
       {kForPeople, kConfig, {"scene_name", "program_version", "planner.threads"}},
       {"only the scene could tell, which a replay does not read",
        kConfig,

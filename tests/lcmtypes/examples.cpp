@@ -187,4 +187,14 @@ timing_t example() {
   return timing;
 }
 
+template <>
+pace_t example() {
+  pace_t pace{};
+  pace.run = 7;
+  pace.pace_number = 12;
+  pace.last_view = 3;
+  pace.holds_s = 2.0;
+  return pace;
+}
+
 }  // namespace nextview

@@ -28,5 +28,7 @@ template <>
 request_t example();
 template <>
 timing_t example();
+template <>
+pace_t example();
 
 }  // namespace nextview
