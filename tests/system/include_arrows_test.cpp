@@ -37,6 +37,7 @@ const std::map<std::string, Arrows> kArrows = {
     {"scoring", {{"sensor", "scene", "sensor_sim", "mapper", "planner/prediction"}, {}}},
     {"reports", {{"sensor", "scene", "mapper", "planner"}, {"logger", "scoring"}}},
     {"exporter", {{}, {"sensor", "mapper", "logger", "reports"}}},
+    {"viewer", {{}, {"sensor", "scene", "mapper", "logger"}}},
     {"runner",
      {{},
       {"sensor", "scene", "sensor_sim", "base_sim", "mapper", "planner", "logger", "scoring",
@@ -44,7 +45,7 @@ const std::map<std::string, Arrows> kArrows = {
 };
 
 /// Folders that are on the bus as a whole; of the others the files that are named so.
-const Folders kOnTheBus = {"lcmtypes", "logger", "reports", "exporter", "runner"};
+const Folders kOnTheBus = {"lcmtypes", "logger", "reports", "exporter", "viewer", "runner"};
 /// Folders that hold no part of the system.
 const Folders kNotOurs = {"tests", "bench", "examples"};
 
