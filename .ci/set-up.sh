@@ -89,6 +89,17 @@ set_up_programs() {
   build_target programs
 }
 
+# set_up_viewer: what ./view and ./run --view need besides: the server, and its page.
+set_up_viewer() {
+  install_missing packages-to-run packages-to-view
+  [ -e "$build/build.ninja" ] || configure -DNEXTVIEW_TESTS=OFF
+  # A folder that was configured before Boost or npm was there.
+  grep -q viewer-page/site "$build/build.ninja" || cmake "$build" > "$install_log" 2>&1 ||
+    fail "$(cat "$install_log")"
+  build_target programs
+  build_target viewer_page
+}
+
 # set_up_java: what LCM's own windows need to decode our types.
 set_up_java() {
   install_missing packages-to-run packages-to-spy
