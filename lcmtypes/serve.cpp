@@ -65,7 +65,10 @@ void serve(Bus& bus, const MakeBusProcess& make, const std::function<bool()>& en
       continue;
     }
     const std::int64_t delivered = bus.counters().delivered;
-    bus.handle(timer.left());
+    // All that is there, so that no step is taken on half of what has been said.
+    for (bool more = bus.handle(timer.left()); more && !ended();) {
+      more = bus.handle(std::chrono::milliseconds(0));
+    }
     if (bus.counters().delivered != delivered) {
       timer.restart();
     } else if (timer.due()) {

@@ -61,6 +61,7 @@ void RunFollower::add(const goal_t& goal) {
   note_view(goal.view);
   viewed_.set_next(goal.view - 1, next_json(goal));
   if (goal.view >= next_view_) goals_.emplace(key_of(goal), goal);
+  advance();
 }
 
 void RunFollower::add(const search_t& search) {

@@ -111,6 +111,38 @@ TEST(RunFollower, OfALogThatEndsInTheMiddleGoesOnWhenItGrows) {
   std::filesystem::remove(file);
 }
 
+TEST(RunFollower, TakesAViewsMessagesInAnyOrder) {
+  const RecoveredRun recovered = recover_run(kLog);
+  const RunRecord& record = recovered.log.record();
+  const commit_t& commit = *record.commit(1);
+  for (int last = 0; last < 4; ++last) {
+    ViewedRun viewed("a run");
+    RunFollower follower(viewed);
+    follower.add(recovered.config());
+    for (int turn = 1; turn <= 4; ++turn) {
+      EXPECT_EQ(viewed.views(), 0);
+      switch ((last + turn) % 4) {
+        case 0:
+          follower.add(*record.goal(1, commit.attempt));
+          break;
+        case 1:
+          follower.add(*record.arrival(1, commit.attempt));
+          break;
+        case 2:
+          for (range_image_t& part :
+               range_image_messages(recovered.images[0]->image, 1, commit.attempt, 0)) {
+            part.run = recovered.config().run;
+            follower.add(part);
+          }
+          break;
+        default:
+          follower.add(commit);
+      }
+    }
+    EXPECT_EQ(viewed.views(), 1) << "the last was " << last;
+  }
+}
+
 TEST(RunFollower, LeavesOutWhatDoesNotFitTheRun) {
   ViewedRun viewed("a run");
   RunFollower follower(viewed);

@@ -280,6 +280,7 @@ const listener = {
       pane.forget();
       pane.cad_asked = false;
     }
+    show_facts();
     ask();
   },
   closed() {

@@ -98,6 +98,7 @@ export class Pane {
     this.voxels.clear();
     this.rows = [];
     this.view = -1;
+    this.scan = this.next = null;
     for (const layer of Object.values(this.layers)) set_points(layer, []);
   }
 
