@@ -4,12 +4,12 @@
 export const kLayers = {
   surface: { name: 'surface', strength: 1 },
   planes: { name: 'occlusion planes', strength: 0.35 },
-  points: { name: 'range image, as points', strength: 1 },
-  sensor: { name: 'sensor and frustum', strength: 1 },
+  points: { name: 'range image', strength: 1 },
+  sensor: { name: 'sensor, frustum', strength: 1 },
   path: { name: 'path', strength: 1 },
   poses: { name: 'past poses', strength: 1 },
-  tried: { name: 'positions tried next', strength: 1 },
-  next: { name: 'way to the next view', strength: 1 },
+  tried: { name: 'tried next', strength: 1 },
+  next: { name: 'way to the next', strength: 1 },
   cad: { name: 'CAD model', strength: 0 },
 };
 

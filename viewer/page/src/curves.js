@@ -44,7 +44,7 @@ export class Curves {
       legend: { show: false },
       scales: { x: { time: false } },
       cursor: { y: false, drag: { x: false, y: false } },
-      axes: [{ ...axis, size: 26, gap: 2 }, { ...axis, size: 44, space: 22 }],
+      axes: [{ ...axis, size: 26, gap: 2 }, { ...axis, size: 50, space: 22 }],
       series: [{}, ...runs.map((run, i) => ({ label: run.name, stroke: kColours[i], width: 1.5, points: { show: false } }))],
       hooks: { draw: [(drawn) => this.draw_cursor(drawn)] },
     }, [[1], ...runs.map(() => [null])], this.element);

@@ -171,6 +171,7 @@ function show_transport() {
 function lines_of(pane) {
   const row = pane.rows[pane.view - 1];
   const lines = [['view', `${Math.max(0, pane.view)} of ${pane.rows.length}`]];
+  if (panes.length > 1) lines.unshift(['run', facts[pane.run]?.name ?? '']);
   if (!row) return lines;
   const { occupied, planes } = pane.voxels;
   const as_committed = occupied === row.occupied && planes === row.planes && row.same_digest;

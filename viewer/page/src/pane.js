@@ -4,6 +4,9 @@ import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { ramp } from './ramp.js';
 import { Voxels } from './voxels.js';
 
+// Colours are as they are written here, in the voxels' shader as in three.js's own.
+THREE.ColorManagement.enabled = false;
+
 const kPoseLength_m = 0.3;
 const kFrustumLength_m = 1.2;
 /// Above this many voxels a renderer in software draws sprites also when nothing moves.
@@ -50,6 +53,7 @@ export class Pane {
     this.caption = document.createElement('figcaption');
     this.element.append(this.canvas, this.caption);
     this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true });
+    this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
     this.software = /swiftshader|llvmpipe|software/i.test(this.renderer_name());
     this.scene = new THREE.Scene();
     this.scene.background = new THREE.Color(0x10151c);
@@ -84,7 +88,7 @@ export class Pane {
         new THREE.MeshLambertMaterial({ color: 0x49c6e5, transparent: true, side: THREE.DoubleSide, flatShading: true,
           depthWrite: false })),
     };
-    this.scene.add(this.voxels.group, this.box, ...Object.values(this.layers), new THREE.HemisphereLight(0xffffff, 0x8090a0, 3));
+    this.scene.add(this.voxels.group, this.box, ...Object.values(this.layers), new THREE.HemisphereLight(0xffffff, 0x607080, 3));
   }
 
   dispose() {
@@ -256,7 +260,7 @@ export class Pane {
     const away = size.length() * narrow;
     const towards = from_above ? new THREE.Vector3(0, -0.001, 1) : new THREE.Vector3(-0.55, -0.75, 0.65);
     this.controls.target.copy(centre);
-    this.camera.position.copy(centre).addScaledVector(towards.normalize(), (from_above ? 1 : 0.95) * away);
+    this.camera.position.copy(centre).addScaledVector(towards.normalize(), (from_above ? 1 : 1.08) * away);
     this.camera.near = 0.02;
     this.camera.far = 20 * size.length();
     this.controls.update();
