@@ -9,8 +9,9 @@ THREE.ColorManagement.enabled = false;
 
 const kPoseLength_m = 0.3;
 const kFrustumLength_m = 1.2;
-/// Above this many voxels a renderer in software draws sprites also when nothing moves.
-const kSoftwareCubes = 400000;
+/// Above this many voxels a renderer in software draws sprites also when nothing moves: it takes some 20 us for
+/// each instance of a cube.
+const kSoftwareCubes = 40000;
 
 const vector = (m) => new THREE.Vector3(m[0], m[1], m[2]);
 
