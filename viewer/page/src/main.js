@@ -535,6 +535,6 @@ window.nextview = {
     }
     pane.dragged = false;
     return { voxels: pane.voxels.voxels, pictures, rate: (1000 * pictures) / (performance.now() - start),
-      renderer: pane.renderer_name(), width: pane.canvas.width, height: pane.canvas.height };
+      renderer: pane.renderer_name, width: pane.canvas.width, height: pane.canvas.height };
   },
 };

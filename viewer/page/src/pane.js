@@ -42,6 +42,16 @@ function pieces(waypoints, into) {
   for (let i = 1; i < waypoints.length; i += 1) into.push(...waypoints[i - 1], ...waypoints[i]);
 }
 
+/// What draws here, as a context of its own says, which is then given back.
+function renderer_name() {
+  const gl = document.createElement('canvas').getContext('webgl2');
+  if (!gl) return '';
+  const names = gl.getExtension('WEBGL_debug_renderer_info');
+  const name = String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER));
+  gl.getExtension('WEBGL_lose_context')?.loseContext();
+  return name;
+}
+
 export class Pane {
   constructor(run, camera, target, changed) {
     this.run = run;
@@ -53,9 +63,10 @@ export class Pane {
     this.canvas.setAttribute('role', 'img');
     this.caption = document.createElement('figcaption');
     this.element.append(this.canvas, this.caption);
-    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: true });
+    this.renderer_name = renderer_name();
+    this.software = /swiftshader|llvmpipe|software/i.test(this.renderer_name);
+    this.renderer = new THREE.WebGLRenderer({ canvas: this.canvas, antialias: !this.software });
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
-    this.software = /swiftshader|llvmpipe|software/i.test(this.renderer_name());
     this.scene = new THREE.Scene();
     this.scene.background = new THREE.Color(0x10151c);
     this.controls = new OrbitControls(camera, this.canvas);
@@ -67,12 +78,6 @@ export class Pane {
     this.view = -1;
     this.rows = [];
     this.make_layers();
-  }
-
-  renderer_name() {
-    const gl = this.renderer.getContext();
-    const names = gl.getExtension('WEBGL_debug_renderer_info');
-    return String(names ? gl.getParameter(names.UNMASKED_RENDERER_WEBGL) : gl.getParameter(gl.RENDERER));
   }
 
   make_layers() {
