@@ -50,7 +50,7 @@ bool MapperProcess::step() {
 }
 
 void MapperProcess::ask_again() {
-  if (!waiting_.empty()) bus_.request<range_image_t>(next_view_, 0);
+  if (!waiting_.empty() || behind()) bus_.request<range_image_t>(next_view_, 0);
 }
 
 void MapperProcess::on_missing(const request_t& request) {

@@ -63,6 +63,10 @@ bool SensorSimProcess::step() {
   return true;
 }
 
+void SensorSimProcess::ask_again() {
+  if (behind()) bus_.request<arrival_t>(reached(), 0);
+}
+
 void SensorSimProcess::on_missing(const request_t& request) {
   if (request.wanted_channel != Channel<range_image_t>::name) return;
   bool forgotten = false;
