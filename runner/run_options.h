@@ -32,7 +32,8 @@ struct RunOptions {
   std::int64_t seed = 1;
   std::optional<int> views;  ///< default: the paper's 60, with quality 300; 1000 for ours
   bool quality = false;
-  std::string out;  ///< folder of the run; empty: a new one in runs_folder
+  std::string resume;  ///< folder of a run to be taken up again; empty: a new run begins
+  std::string out;     ///< folder of the run; empty: a new one in runs_folder
   std::string runs_folder = "runs";
 
   std::string sensor = "paper";  ///< a name in sensors_folder, or a file
