@@ -3,8 +3,10 @@
 
 #include <benchmark/benchmark.h>
 #include <embree3/rtcore.h>
+#ifdef __x86_64__
 #include <pmmintrin.h>
 #include <xmmintrin.h>
+#endif
 
 #include <cmath>
 #include <cstring>
@@ -81,14 +83,18 @@ class BareEmbree {
     RTCIntersectContext context;
     rtcInitIntersectContext(&context);
     context.flags = RTC_INTERSECT_CONTEXT_FLAG_COHERENT;
+#ifdef __x86_64__  // where Embree asks for it, as in scene/scene.cpp
     const unsigned int saved = _mm_getcsr();
     _mm_setcsr(saved | _MM_FLUSH_ZERO_ON | _MM_DENORMALS_ZERO_ON);
+#endif
     for (RTCRayHit16& packet : packets_) {
       std::fill_n(packet.ray.tfar, 16, std::numeric_limits<float>::infinity());
       std::fill_n(packet.hit.geomID, 16, RTC_INVALID_GEOMETRY_ID);
       rtcIntersect16(kAllValid.data(), scene_, &context, &packet);
     }
+#ifdef __x86_64__
     _mm_setcsr(saved);
+#endif
   }
 
   float range_m(const RayTable& rays, int u, int v) const {

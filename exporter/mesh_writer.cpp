@@ -55,14 +55,18 @@ void write_mesh(const SurfaceMesh& mesh, MeshFormat format, const std::filesyste
   if (mesh.triangles.empty()) {
     throw std::runtime_error(file.string() + ": there is no surface to write");
   }
-  aiScene scene;  // owns what it points to
+  std::unique_ptr<aiMesh> of_assimp = assimp_mesh(mesh, is_y_up(format));
+  auto material = std::make_unique<aiMaterial>();
+  aiScene scene;  // owns what it points to, from where it does
   scene.mRootNode = new aiNode("recovered");
   scene.mRootNode->mNumMeshes = 1;
   scene.mRootNode->mMeshes = new unsigned[1]{0};
+  scene.mMaterials = new aiMaterial* [1] { nullptr };
+  scene.mMaterials[0] = material.release();
   scene.mNumMaterials = 1;
-  scene.mMaterials = new aiMaterial* [1] { new aiMaterial };
+  scene.mMeshes = new aiMesh* [1] { nullptr };
+  scene.mMeshes[0] = of_assimp.release();
   scene.mNumMeshes = 1;
-  scene.mMeshes = new aiMesh* [1] { assimp_mesh(mesh, is_y_up(format)).release() };
   Assimp::Exporter exporter;
   if (exporter.Export(&scene, assimp_format(format), file.string()) != aiReturn_SUCCESS) {
     throw std::runtime_error(file.string() + ": cannot be written; does its folder exist? (" +

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <cstring>
+#include <bit>
+#include <cstdint>
 #include <string>
 #include <string_view>
 #include <tuple>
@@ -300,9 +301,10 @@ void walk(const std::string& prefix, const Get& get, F& f) {
 
 template <class Value>
 bool same_bits(const Value& a, const Value& b) {
-  if constexpr (std::is_arithmetic_v<Value>) {
-    return std::memcmp(&a, &b, sizeof a) == 0;
-  } else if constexpr (std::is_same_v<Value, std::string>) {
+  if constexpr (std::is_floating_point_v<Value>) {
+    using Bits = std::conditional_t<sizeof(Value) == 8, std::uint64_t, std::uint32_t>;
+    return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
+  } else if constexpr (std::is_integral_v<Value> || std::is_same_v<Value, std::string>) {
     return a == b;
   } else {
     if (std::size(a) != std::size(b)) return false;

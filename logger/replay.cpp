@@ -29,6 +29,7 @@ class Replay {
       : log_(log),
         record_(log.record()),
         config_(*record_.config()),
+        simulated_(simulated_in(record_)),
         options_(options),
         planner_(make_view_planner(config_)) {}
 
@@ -99,7 +100,7 @@ class Replay {
       agree(
           *arrival,
           expected_arrival(*arrival, *goal, arrived, present_.pose.value_or(start_pose_of(config_)),
-                           is_simulated(config_) && (arrived || present_.pose || view == 1)),
+                           simulated_.base && (arrived || present_.pose || view == 1)),
           name);
     }
     if (!arrived) present_.utime = arrival->utime;
@@ -169,7 +170,8 @@ class Replay {
     const MissingMessage name = account_for<range_image_t>(received.view, received.attempt);
     const arrival_t* arrival = record_.arrival(received.view, received.attempt);
     if (!arrival) return;
-    for (const std::string& what : contradictions_of(received, *arrival, config_)) {
+    for (const std::string& what :
+         contradictions_of(received, *arrival, config_, simulated_.sensor)) {
       report_.differences.push_back(describe(name) + ": " + what);
     }
   }
@@ -277,18 +279,26 @@ class Replay {
 
   /// Messages that nothing above has looked at.
   void tell_what_is_left(int views) {
-    const bool early = record_.ends_early();
     for (const MissingMessage& held : record_.held()) {
-      if (accounted_.contains(held)) continue;
-      const std::string line = describe(held) + " is there, and nothing in the run led to it";
-      const bool under_way = early && held.view == views + 1;
-      (under_way ? report_.remarks : report_.differences).push_back(line);
+      if (!accounted_.contains(held)) tell_of(held, describe(held) + " is there", views);
     }
+    for (const MissingMessage& held : record_.held_in_part()) {
+      const bool is_missed = held.view <= views && held.attempt == record_.final_attempt(held.view);
+      if (!is_missed) tell_of(held, describe(held) + " is there in part", views);
+    }
+  }
+
+  /// A message that the run does not account for; no fault of a view that was under way.
+  void tell_of(const MissingMessage& held, const std::string& what, int views) {
+    const bool under_way = record_.ends_early() && held.view == views + 1;
+    (under_way ? report_.remarks : report_.differences)
+        .push_back(what + ", and nothing in the run led to it");
   }
 
   const RunLog& log_;
   const RunRecord& record_;
   const run_config_t& config_;
+  Simulated simulated_;
   ReplayOptions options_;
   std::unique_ptr<ViewPlanner> planner_;
   ReplayReport report_;

@@ -206,4 +206,12 @@ std::vector<MissingMessage> RunRecord::held() const {
   return held;
 }
 
+std::vector<MissingMessage> RunRecord::held_in_part() const {
+  std::vector<MissingMessage> held;
+  for (const MessageKey& key : assembler_.incomplete()) {
+    held.push_back(message_of<range_image_t>(key));
+  }
+  return held;
+}
+
 }  // namespace nextview

@@ -29,8 +29,8 @@ std::string describe(const MissingMessage& missing);
 enum class RangeImages { Keep, OnlyCount };
 
 /// The messages of one run by their keys, whether they come from the bus or out of a log, and what
-/// is missing among them. Each message is added once, the configuration first. Timings are there or
-/// not: nothing misses them.
+/// is missing among them. Each message is added once, the configuration first. Timings and statuses
+/// are there or not: nothing misses them.
 ///
 /// add() throws RejectedMessage for a view or attempt that the run cannot have, and for a part of a
 /// range image that contradicts the parts before it.
@@ -49,6 +49,7 @@ class RunRecord {
   /// The run is taken up again: its end is none any more.
   void forget_stop() { stop_.reset(); }
   void add(const timing_t& timing);
+  void add(const status_t& status) { roles_.insert(status.role); }
 
   const std::optional<run_config_t>& config() const { return config_; }
   const std::optional<stop_t>& stop() const { return stop_; }
@@ -62,6 +63,8 @@ class RunRecord {
   std::optional<double> duration_s(int view, int attempt, const std::string& name) const;
   const std::map<MessageKey, arrival_t>& arrivals() const { return arrivals_; }
   const std::map<int, commit_t>& commits() const { return commits_; }
+  /// Who has said how it is (status_t), by role.
+  const std::set<std::string>& roles() const { return roles_; }
   /// Frees a range image that is needed no more; it still counts as there.
   void forget_range_image(int view, int attempt);
 
@@ -90,6 +93,8 @@ class RunRecord {
   int final_attempt(int view) const;
   /// Every goal, search, arrival, whole range image and commit that is here.
   std::vector<MissingMessage> held() const;
+  /// Range images of which some parts are here, and some are not.
+  std::vector<MissingMessage> held_in_part() const;
 
  private:
   void check_fits(int view, int attempt) const;
@@ -106,6 +111,7 @@ class RunRecord {
   std::map<std::tuple<int, int, std::string>, double> durations_s_;  // by view, attempt, name
   std::set<MessageKey> whole_images_;
   std::map<MessageKey, ReceivedRangeImage> images_;
+  std::set<std::string> roles_;
 };
 
 }  // namespace nextview

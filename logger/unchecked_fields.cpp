@@ -12,6 +12,8 @@ std::vector<UncheckedFields> unchecked_fields(const RunRecord& run, bool planner
   constexpr std::string_view kSearch = Channel<search_t>::name;
   constexpr std::string_view kArrival = Channel<arrival_t>::name;
   constexpr std::string_view kStop = Channel<stop_t>::name;
+  const std::vector<std::string> kBelievedPose = {"believed_position_m", "believed_pan_rad",
+                                                  "believed_tilt_rad"};
   constexpr std::string_view kForPeople = "for people, or of the moment";
   std::vector<UncheckedFields> unchecked = {
       {kForPeople, Channel<timing_t>::name, {"*"}},
@@ -44,16 +46,27 @@ std::vector<UncheckedFields> unchecked_fields(const RunRecord& run, bool planner
     unchecked.push_back(
         {"why a run ended early, it says itself", kStop, {"stop_reason", "detail"}});
   }
-  if (!is_simulated(*run.config())) {
-    constexpr std::string_view kRobot = "what a real robot and its sensor say is believed";
+  const Simulated simulated = simulated_in(run);
+  if (!simulated.base) {
     unchecked.push_back(
-        {kRobot,
+        {"what a robot of one's own says is believed",
          kArrival,
          {"utime", "true_position_m", "true_pan_rad", "true_tilt_rad", "path_length_m"}});
-    unchecked.push_back({kRobot,
+    unchecked.push_back(
+        {"where a robot of one's own has refused to go on is believed", kArrival, kBelievedPose});
+  }
+  if (!simulated.sensor) {
+    unchecked.push_back(
+        {"what a sensor of one's own says of itself is believed",
+         kConfig,
+         {"sensor.geometry", "sensor.columns", "sensor.rows", "sensor.geometry_parameter",
+          "sensor.range_min_m", "sensor.range_max_m", "sensor.scan_duration_s"}});
+    unchecked.push_back(
+        {"held against a range image of one's own to a millionth only", kArrival, kBelievedPose});
+  } else {
+    unchecked.push_back({"sines and cosines are compared to a millionth only",
                          kConfig,
-                         {"sensor.columns", "sensor.rows", "sensor.geometry_parameter",
-                          "sensor.range_min_m", "sensor.range_max_m", "sensor.scan_duration_s"}});
+                         {"sensor.geometry_parameter"}});
   }
   if (!planner) {
     constexpr std::string_view kDecided = "decided again with --planner only";

@@ -36,6 +36,7 @@ std::vector<LastLook::View> views_above(double fitness, const VoxelGrid& grid,
 
 std::vector<VoxelIndex> voxels_of(const std::vector<LastLook::View>& views) {
   std::vector<VoxelIndex> voxels;
+  voxels.reserve(views.size());
   for (const LastLook::View& view : views) voxels.push_back(view.voxel);
   return voxels;
 }

@@ -12,6 +12,7 @@ namespace {
 
 void write_report(const std::vector<std::string>& folders, const std::filesystem::path& file) {
   std::vector<nlohmann::ordered_json> runs;
+  runs.reserve(folders.size());
   for (const std::string& folder : folders) runs.push_back(nextview::report_data(folder));
   std::ofstream out(file, std::ios::binary);
   if (!out) throw std::runtime_error(file.string() + ": cannot be written; does its folder exist?");

@@ -247,11 +247,9 @@ Json report_data(const std::filesystem::path& folder_or_log) {
   data["name"] = name_of(folder_or_log);
   data["settings"] = settings_of(*record.config());
   data["summary"] = read_summary(folder / "summary.json");
-  if (const auto& stop = record.stop()) {
-    data["stop"] = {{"reason", stop->stop_reason}, {"detail", stop->detail}};
-  } else {
-    data["stop"] = {{"reason", "no end"}, {"detail", "The log says of no end of the run."}};
-  }
+  const std::optional<stop_t>& stop = record.stop();
+  data["stop"] = {{"reason", stop ? stop->stop_reason : "no end"},
+                  {"detail", stop ? stop->detail : "The log says of no end of the run."}};
   data["views"] = views_of(record, coverage_column(folder / "views.csv"));
   data["refusals"] = refusals_of(record);
   Json missing = Json::array();

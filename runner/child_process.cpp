@@ -74,6 +74,7 @@ ChildProcess::ChildProcess(std::string role, const std::vector<std::string>& arg
                            const ChildTerms& terms)
     : role_(std::move(role)) {
   std::vector<char*> argv;
+  argv.reserve(arguments.size() + 1);
   for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
   argv.push_back(nullptr);
   Pipe output = make_pipe(O_CLOEXEC);

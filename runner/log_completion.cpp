@@ -82,6 +82,12 @@ void read_log_to_its_end(RunLog& log, Bus& bus, const HeardRun& heard) {
   }
 }
 
+std::optional<stop_t> end_to_publish(const std::optional<stop_t>& recorded,
+                                     const std::optional<stop_t>& heard, const stop_t& own) {
+  if (recorded) return std::nullopt;
+  return heard ? *heard : own;
+}
+
 void publish_into_log(const stop_t& stop, RunLog& log, Bus& bus) {
   bus.publish(stop);
   AskTimer again(milliseconds(20), milliseconds(200));

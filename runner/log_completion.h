@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <set>
 
 #include "lcmtypes/bus.h"
@@ -21,6 +22,14 @@ bool publish_again(Bus& bus, const MissingMessage& missing, const RunRecord& hea
 /// Reads what the recorder still writes of a run that ends early, and has what it lacks published
 /// again: the view under way still counts. Ends when all is there, or nothing more comes.
 void read_log_to_its_end(RunLog& log, Bus& bus, const HeardRun& heard);
+
+/// The end that is to be published so that the log of a run that ended early says how it ended.
+/// There is one end only: another one would contradict it.
+/// @param recorded the end in the log, if there is one: then nothing is published
+/// @param heard the end that was heard here: then the same again, which its planner says no more
+/// @param own what to say when nobody has ended the run
+std::optional<stop_t> end_to_publish(const std::optional<stop_t>& recorded,
+                                     const std::optional<stop_t>& heard, const stop_t& own);
 
 /// Publishes an end of the run until it is in the log, for two seconds at most.
 void publish_into_log(const stop_t& stop, RunLog& log, Bus& bus);

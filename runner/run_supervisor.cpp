@@ -241,12 +241,14 @@ void RunSupervisor::complete_log() {
   bus_->request<status_t>(0, 0);
   AskTimer reminder = reminder_after(milliseconds(20));
   heard_.last_progress = Clock::now();
+  std::vector<MissingMessage> had_missing;
   for (;;) {
-    const std::int64_t had = log_->counters().ours;
     log_->read_on();
     const std::vector<MissingMessage> missing = log_->record().missing();
     if (missing.empty()) return;
-    if (log_->counters().ours != had) heard_.last_progress = Clock::now();
+    // What is asked for is recorded too: the log grows, and is none the better for it.
+    if (missing != had_missing) heard_.last_progress = Clock::now();
+    had_missing = missing;
     if (reminder.due()) {
       for (const MissingMessage& message : missing) request(*bus_, message);
     }
@@ -283,16 +285,15 @@ void RunSupervisor::end_early(const EndsEarly& end) {
     if (!log_ || !record.config()) return;
     read_log_to_its_end(*log_, *bus_, heard_);
     make_rows();
-    if (const auto& recorded = log_->record().stop()) {  // heard here or not
-      if (!record.stop()) record.add(*recorded);
-      return;
+    stop_t own{};
+    own.views = log_->record().views_taken();
+    own.stop_reason = std::string(to_string(end.reason));
+    own.detail = end.detail;
+    const std::optional<stop_t>& recorded = log_->record().stop();
+    if (recorded && !record.stop()) record.add(*recorded);  // it was missed here
+    if (const auto stop = end_to_publish(recorded, record.stop(), own)) {
+      publish_into_log(*stop, *log_, *bus_);
     }
-    // The planner has not ended the run, so that its log says how it ended somebody else must.
-    stop_t stop{};
-    stop.views = log_->record().views_taken();
-    stop.stop_reason = std::string(to_string(end.reason));
-    stop.detail = end.detail;
-    publish_into_log(record.stop().value_or(stop), *log_, *bus_);
     make_rows();
   } catch (const std::exception& error) {
     progress_.say(std::string("the end of the run could not be logged: ") + error.what());

@@ -45,6 +45,7 @@ std::vector<double> column_middles(double min_m, double max_m, double spacing_m)
   const auto count = static_cast<int>(std::ceil((max_m - min_m) / spacing_m));
   const double first_m = 0.5 * (min_m + max_m) - 0.5 * (count - 1) * spacing_m;
   std::vector<double> middles;
+  middles.reserve(static_cast<std::size_t>(std::max(count, 0)));
   for (int i = 0; i < count; ++i) {
     middles.push_back(in_whole_centimetres(first_m + i * spacing_m));
   }

@@ -62,7 +62,7 @@ std::string cache_folder(const std::string& given) {
     const char* value = std::getenv(name);
     return std::string(value == nullptr ? "" : value);
   };
-  if (const std::string own = environment("NEXTVIEW_CACHE"); !own.empty()) return own;
+  if (std::string own = environment("NEXTVIEW_CACHE"); !own.empty()) return own;
   if (const std::string xdg = environment("XDG_CACHE_HOME"); !xdg.empty()) return xdg + "/nextview";
   if (const std::string home = environment("HOME"); !home.empty()) return home + "/.cache/nextview";
   return {};

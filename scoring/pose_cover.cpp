@@ -77,6 +77,7 @@ std::vector<Eigen::Vector3d> at_spacing(const std::vector<Eigen::Vector3d>& posi
     if (!is_new && distance_m < at->second.distance_m) at->second = {distance_m, position};
   }
   std::vector<Eigen::Vector3d> chosen;
+  chosen.reserve(nearest.size());
   for (const auto& [multiple, best] : nearest) chosen.push_back(best.position_m);
   return chosen;
 }

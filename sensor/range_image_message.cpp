@@ -207,4 +207,11 @@ std::optional<ReceivedRangeImage> RangeImageAssembler::add(const range_image_t& 
   return received;
 }
 
+std::vector<MessageKey> RangeImageAssembler::incomplete() const {
+  std::vector<MessageKey> keys;
+  keys.reserve(assemblies_.size());
+  for (const auto& [key, assembly] : assemblies_) keys.push_back(key);
+  return keys;
+}
+
 }  // namespace nextview

@@ -49,6 +49,9 @@ class RangeImageAssembler {
   /// @throws RejectedMessage when the part contradicts the parts before it
   std::optional<ReceivedRangeImage> add(const range_image_t& part);
 
+  /// View and attempt of the images of which only some parts have come.
+  std::vector<MessageKey> incomplete() const;
+
  private:
   struct Assembly {
     std::map<int, range_image_t> parts;

@@ -118,6 +118,7 @@ constexpr std::size_t first_of(std::size_t packet) {
 std::array<int, 2> cells_between(double min_slope, double max_slope) {
   // By slope from -1 to 1 the cell in which it lies.
   constexpr int kSlopes = 1024;
+  constexpr double kHalfOfThem = kSlopes / 2.0;
   static const std::array<std::int8_t, kSlopes + 1> cells = [] {
     std::array<std::int8_t, kSlopes + 1> result{};
     for (int i = 0; i <= kSlopes; ++i) {
@@ -129,7 +130,7 @@ std::array<int, 2> cells_between(double min_slope, double max_slope) {
   constexpr double kSlack = 0.001;  // slopes of rays are rounded
   if (max_slope < -1.0 - kSlack || min_slope > 1.0 + kSlack) return {1, 0};
   const auto cell = [&](double slope) {
-    const double at = (std::clamp(slope, -1.0, 1.0) + 1.0) * (kSlopes / 2);
+    const double at = (std::clamp(slope, -1.0, 1.0) + 1.0) * kHalfOfThem;
     return int{cells[static_cast<std::size_t>(at)]};
   };
   return {std::max(0, cell(min_slope - kSlack) - 1),
@@ -257,6 +258,7 @@ void Panorama::add_passing(const VoxelIndex& step, Packets& packets) {
 PanoramaViews::PanoramaViews(const RayTable& rays, std::span<const Orientation> orientations) {
   const Aperture aperture(rays);
   std::vector<Eigen::Vector3d> directions;
+  directions.reserve(Panorama::kCells);
   for (int cell = 0; cell < Panorama::kCells; ++cell)
     directions.push_back(Panorama::direction(cell));
   begins_ = {0};

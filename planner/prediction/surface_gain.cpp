@@ -155,6 +155,7 @@ void SurfaceGain::weigh_unknown(const Known& known) {
 }
 
 void SurfaceGain::weigh_grown(const Known& known) {
+  if (known.grown == nullptr) return;  // no cell meets what is grown
   count(grown_cells_, grown_at_, known.field.size(), grown_);
   for (const std::uint32_t offset : grown_.offsets) {
     std::int32_t& value = grown_.by_offset[offset];

@@ -38,7 +38,17 @@ std::map<std::array<int, 3>, int> cubes_of(const std::filesystem::path& vrml, do
   return cubes;
 }
 
+/// Leaves a test of trees out, and says so, where nextview_export was built without OctoMap.
+#ifdef NEXTVIEW_HAS_OCTOMAP
+#define NEXTVIEW_NEEDS_OCTOMAP()
+#else
+#define NEXTVIEW_NEEDS_OCTOMAP()                                                               \
+  GTEST_SKIP() << "nextview_export was built without OctoMap: apt-get install liboctomap-dev " \
+                  "and configure again"
+#endif
+
 TEST(OctoMapTree, IsWhatOctoMapsOwnToolReads) {
+  NEXTVIEW_NEEDS_OCTOMAP();
   NEXTVIEW_NEEDS_PROGRAM("bt2vrml", "octomap-tools");
   const TemporaryFolder folder;
   const RecoveredRun run = recover_run(short_log());
@@ -72,6 +82,7 @@ TEST(OctoMapTree, IsWhatOctoMapsOwnToolReads) {
 
 /// OctoMap reads the whole tree, free space too, and finds it equal to itself.
 TEST(OctoMapTree, IsConvertedByOctoMap) {
+  NEXTVIEW_NEEDS_OCTOMAP();
   NEXTVIEW_NEEDS_PROGRAM("convert_octree", "octomap-tools");
   const TemporaryFolder folder;
   const std::string tree = exported(folder, "octomap.bt").string();
@@ -87,6 +98,25 @@ TEST(OctoMapTree, IsConvertedByOctoMap) {
   };
   EXPECT_EQ(bytes(again), bytes(tree));
   EXPECT_GT(bytes(tree).size(), 1000U);
+}
+
+/// Built without it, the program says what to install.
+TEST(OctoMapTree, IsWrittenOrSaidToNeedOctoMap) {
+  const TemporaryFolder folder;
+  const std::filesystem::path file = folder / "octomap.bt";
+  const Outcome outcome = run_program({program_path("nextview_export"), short_log().string(),
+                                       "--to", "octomap.bt", "--out", file.string()});
+#ifdef NEXTVIEW_HAS_OCTOMAP
+  EXPECT_EQ(outcome.status, 0) << outcome.output;
+  EXPECT_TRUE(std::filesystem::exists(file));
+#else
+  EXPECT_EQ(outcome.status, 1) << outcome.output;
+  EXPECT_NE(outcome.output.find("octomap.bt: this program was built without OctoMap; install "
+                                "liboctomap-dev"),
+            std::string::npos)
+      << outcome.output;
+  EXPECT_FALSE(std::filesystem::exists(file));
+#endif
 }
 
 TEST(Mcap, IsWhatPythonReads) {

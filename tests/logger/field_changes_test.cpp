@@ -89,8 +89,7 @@ void change_field(const Recording& recording, const std::string& field, const Ge
   }
 }
 
-TEST(FieldChanges, AreNoticedOrSaidToBeUnchecked) {
-  const Recording recording = record_run();
+void expect_changes_noticed_or_said_to_be_unchecked(const Recording& recording) {
   for (const bool planner : {false, true}) {
     ASSERT_EQ(replay(log_of(recording), {.planner = planner}).exit_status(), 0);
     for_each_channel([&]<class Message>() {
@@ -105,8 +104,18 @@ TEST(FieldChanges, AreNoticedOrSaidToBeUnchecked) {
   }
 }
 
-TEST(FieldChanges, UncheckedFieldsExist) {
-  const RunLog log = log_of(record_run());
+TEST(FieldChanges, AreNoticedOrSaidToBeUnchecked) {
+  expect_changes_noticed_or_said_to_be_unchecked(record_run());
+}
+
+TEST(FieldChanges, InARunOfADriversAreNoticedOrSaidToBeUnchecked) {
+  const Recording own_base = with_driver_for("base_sim", record_run());
+  expect_changes_noticed_or_said_to_be_unchecked(own_base);
+  expect_changes_noticed_or_said_to_be_unchecked(with_driver_for("sensor_sim", own_base));
+}
+
+void expect_that_unchecked_fields_exist(const Recording& recording) {
+  const RunLog log = log_of(recording);
   for (const UncheckedFields& some : unchecked_fields(log.record(), false)) {
     for (const std::string& name : some.fields) {
       bool exists = name == "*";
@@ -117,6 +126,14 @@ TEST(FieldChanges, UncheckedFieldsExist) {
       });
       EXPECT_TRUE(exists) << some.channel << " has no field " << name;
     }
+  }
+}
+
+TEST(FieldChanges, UncheckedFieldsExist) {
+  const Recording own_base = with_driver_for("base_sim", record_run());
+  for (const Recording& recording :
+       {record_run(), own_base, with_driver_for("sensor_sim", own_base)}) {
+    expect_that_unchecked_fields_exist(recording);
   }
 }
 

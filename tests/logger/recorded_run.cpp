@@ -55,6 +55,12 @@ class RefusingBase {
   goal_t goal_{};  // the last one reached
 };
 
+void say_ready(Bus& bus) {
+  status_t status = example<status_t>();
+  status.role = bus.role();
+  bus.publish(status);
+}
+
 }  // namespace
 
 Recording record_run() {
@@ -71,7 +77,7 @@ Recording record_run() {
   MapperProcess mapper(mapper_bus, config);
   run_bus.publish(config);
   run_bus.request<status_t>(0, 0);
-  mapper_bus.publish(example<status_t>());
+  for (Bus* bus : {&base_bus, &sensor_bus, &mapper_bus}) say_ready(*bus);
   const auto turn = [&] {
     bool worked = planner.step();
     worked |= sensor.step();
@@ -84,6 +90,10 @@ Recording record_run() {
   while (turn()) {
   }
   return network.published();
+}
+
+Recording with_driver_for(const std::string& role, const Recording& recording) {
+  return without<status_t>(recording, [&](const status_t& status) { return status.role == role; });
 }
 
 RunLog log_of(const Recording& recording) {

@@ -17,6 +17,10 @@ using Recording = std::vector<std::pair<std::string, std::vector<std::uint8_t>>>
 /// mapper and simulated sensor, and a base that refuses the first goal of view 3.
 Recording record_run();
 
+/// The recording as it would be with a driver in the place of a simulator, who says nothing of how
+/// he is: "base_sim" or "sensor_sim".
+Recording with_driver_for(const std::string& role, const Recording& recording);
+
 /// The log of a recording, read to its end.
 RunLog log_of(const Recording& recording);
 

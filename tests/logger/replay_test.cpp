@@ -8,6 +8,7 @@
 #include <algorithm>
 
 #include "logger/unchecked_fields.h"
+#include "sensor/range_image_message.h"
 #include "tests/logger/recorded_run.h"
 
 namespace nextview {
@@ -116,6 +117,52 @@ TEST(Replay, FindsPosesMovedByAMetre) {
   expect_status(all, 1, "history_digest");
 }
 
+/// As a robot of one's own says it, which computes in 32 bits and drives as well as it can.
+void drive_nearly_there(arrival_t& arrival) {
+  for (int axis = 0; axis < 3; ++axis) {
+    arrival.true_position_m[axis] += 0.001;
+    arrival.believed_position_m[axis] = static_cast<float>(arrival.believed_position_m[axis]);
+  }
+  arrival.believed_pan_rad = static_cast<float>(arrival.believed_pan_rad);
+  arrival.believed_tilt_rad = static_cast<float>(arrival.believed_tilt_rad);
+  arrival.path_length_m += 0.01;
+}
+
+TEST(Replay, BelievesADriverInThePlaceOfBaseAndSensor) {
+  const Recording own_base = with_driver_for("base_sim", recorded());
+  const Recording own_sensor = with_driver_for("sensor_sim", recorded());
+  const Recording own = with_driver_for("sensor_sim", own_base);
+  for (const Recording& recording : {own_base, own_sensor, own}) {
+    EXPECT_EQ(replayed(recording).exit_status(), 0) << lines_of(replayed(recording));
+  }
+  EXPECT_EQ(replayed(changed<arrival_t>(own, drive_nearly_there)).exit_status(), 0)
+      << lines_of(replayed(changed<arrival_t>(own, drive_nearly_there)));
+  // Whoever is there is held to what is known of him.
+  expect_status(changed<arrival_t>(own_base, drive_nearly_there), 1,
+                "its pose is not the one the robot arrived at");
+  expect_status(changed<arrival_t>(own_sensor, drive_nearly_there), 1,
+                "NEXTVIEW_ARRIVAL of view 2, attempt 1 differs in true_position_m");
+  expect_status(
+      changed<arrival_t>(own, [](arrival_t& arrival) { arrival.believed_position_m[0] += 1e-4; }),
+      1, "its pose is not the one the robot arrived at");
+}
+
+TEST(Replay, SaysWhomItHasBelieved) {
+  const auto unchecked = [](const Recording& recording, std::string_view channel,
+                            const std::string& field) {
+    return is_unchecked(unchecked_fields(log_of(recording).record(), true), channel, field);
+  };
+  const Recording own_base = with_driver_for("base_sim", recorded());
+  const Recording own_sensor = with_driver_for("sensor_sim", recorded());
+  EXPECT_FALSE(unchecked(recorded(), "NEXTVIEW_ARRIVAL", "path_length_m"));
+  EXPECT_TRUE(unchecked(own_base, "NEXTVIEW_ARRIVAL", "path_length_m"));
+  EXPECT_FALSE(unchecked(own_sensor, "NEXTVIEW_ARRIVAL", "path_length_m"));
+  EXPECT_FALSE(unchecked(recorded(), "NEXTVIEW_ARRIVAL", "believed_pan_rad"));
+  EXPECT_TRUE(unchecked(own_sensor, "NEXTVIEW_ARRIVAL", "believed_pan_rad"));
+  EXPECT_FALSE(unchecked(own_base, "NEXTVIEW_RUN_CONFIG", "sensor.range_max_m"));
+  EXPECT_TRUE(unchecked(own_sensor, "NEXTVIEW_RUN_CONFIG", "sensor.range_max_m"));
+}
+
 TEST(Replay, FindsArrivalsThatWereRefused) {
   const auto log = changed<arrival_t>(recorded(), [](arrival_t& arrival) {
     arrival.arrived = 0;
@@ -203,6 +250,45 @@ TEST(Replay, FindsMessagesThatNothingLedTo) {
     log.emplace_back(channel, encode(goal));
   }
   expect_status(log, 1, "NEXTVIEW_GOAL of view 2, attempt 3 is there, and nothing in the run led");
+}
+
+/// The recording with all but the last part of an image, as if it were of that view and attempt.
+Recording with_part_of_an_image(Recording recording, int view, int attempt) {
+  const RunLog log = log_of(recorded());
+  auto parts = range_image_messages(log.record().range_image(4, 1)->image, view, attempt, 0, 512);
+  parts.pop_back();
+  EXPECT_FALSE(parts.empty());
+  for (range_image_t& part : parts) {
+    part.run = log.record().config()->run;
+    recording.emplace_back(Channel<range_image_t>::name, encode(part));
+  }
+  return recording;
+}
+
+TEST(Replay, NamesAnImageOfWhichSomePartsAreThere) {
+  expect_status(
+      with_part_of_an_image(recorded(), 4, 3), 1,
+      "NEXTVIEW_RANGE_IMAGE of view 4, attempt 3 is there in part, and nothing in the run "
+      "led to it");
+  // Of a view that was taken it is what is missing.
+  expect_status(with_part_of_an_image(
+                    without<range_image_t>(
+                        recorded(), [](const range_image_t& part) { return part.view == 4; }),
+                    4, 1),
+                3, "the log lacks NEXTVIEW_RANGE_IMAGE of view 4, attempt 1");
+}
+
+TEST(Replay, NamesPartsOfAnImageBeyondTheEnd) {
+  Recording log = without<goal_t>(recorded(), [](const goal_t& goal) { return goal.view > 3; });
+  log = without<search_t>(log, [](const search_t& search) { return search.view > 3; });
+  log = without<arrival_t>(log, [](const arrival_t& arrival) { return arrival.view > 3; });
+  log = without<range_image_t>(log, [](const range_image_t& part) { return part.view > 3; });
+  log = without<commit_t>(log, [](const commit_t& commit) { return commit.view > 3; });
+  const std::string words = "NEXTVIEW_RANGE_IMAGE of view 4, attempt 1 is there in part";
+  // The view under way when a run is broken off.
+  expect_status(with_part_of_an_image(ended_by("interrupted", 3, log), 4, 1), 0, words);
+  // After the planner's own end nothing of a view is left to come.
+  expect_status(with_part_of_an_image(ended_by("nothing_new", 3, log), 4, 1), 1, words);
 }
 
 TEST(Replay, FindsAnEndForAReasonThatDoesNotHold) {

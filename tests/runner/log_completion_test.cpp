@@ -68,5 +68,20 @@ TEST(PublishAgain, SaysNothingOfWhatIsNotHere) {
   EXPECT_TRUE(network.published().empty());
 }
 
+// One end of a run only: what is in the log counts, and then what was heard.
+TEST(EndToPublish, IsNeverAnotherThanTheOneThatIsThere) {
+  const stop_t recorded = stop_after(2, 0, "nothing_new");
+  const stop_t heard = stop_after(3, 0, "view_limit");
+  const stop_t own = stop_after(1, 0, "interrupted");
+  EXPECT_FALSE(end_to_publish(recorded, heard, own)) << "recorded and heard";
+  EXPECT_FALSE(end_to_publish(recorded, std::nullopt, own)) << "recorded, and missed here";
+  const auto missed_by_recorder = end_to_publish(std::nullopt, heard, own);
+  ASSERT_TRUE(missed_by_recorder) << "heard, and missed by the recorder";
+  EXPECT_EQ(encode(*missed_by_recorder), encode(heard));
+  const auto of_the_run = end_to_publish(std::nullopt, std::nullopt, own);
+  ASSERT_TRUE(of_the_run) << "neither";
+  EXPECT_EQ(encode(*of_the_run), encode(own));
+}
+
 }  // namespace
 }  // namespace nextview

@@ -1,9 +1,13 @@
-// Stands in for lcm-logger, and misses every third message the first time it comes.
+// Stands in for lcm-logger, and misses every third message the first time it comes; with a
+// channel's name in NEXTVIEW_NEVER_RECORDED nothing but the first message on that channel, however
+// often it comes.
 #include <csignal>
+#include <cstdlib>
 #include <iostream>
 #include <lcm/lcm-cpp.hpp>
 #include <set>
 #include <string>
+#include <utility>
 
 namespace {
 
@@ -12,7 +16,8 @@ void request_stop(int) { stop = 1; }
 
 class Recorder {
  public:
-  explicit Recorder(const std::string& file) : log_(file, "w") {}
+  Recorder(const std::string& file, std::string never)
+      : log_(file, "w"), never_(std::move(never)) {}
 
   // A plain function, because LCM calls members through a type they do not have.
   static void receive(const lcm::ReceiveBuffer* buffer, const std::string& channel,
@@ -22,9 +27,7 @@ class Recorder {
 
   void write(const lcm::ReceiveBuffer* buffer, const std::string& channel) {
     const std::string bytes(static_cast<const char*>(buffer->data), buffer->data_size);
-    const bool first_time = seen_.insert(channel + bytes).second;
-    const bool of_the_run = channel != "NEXTVIEW_REQUEST" && channel != "NEXTVIEW_STATUS";
-    if (first_time && of_the_run && ++count_ % 3 == 0) {
+    if (never_.empty() ? forgets(channel, bytes) : overlooks(channel, bytes)) {
       ++forgotten_;
       return;
     }
@@ -40,7 +43,21 @@ class Recorder {
   int forgotten() const { return forgotten_; }
 
  private:
+  bool forgets(const std::string& channel, const std::string& bytes) {
+    const bool first_time = seen_.insert(channel + bytes).second;
+    const bool of_the_run = channel != "NEXTVIEW_REQUEST" && channel != "NEXTVIEW_STATUS";
+    return first_time && of_the_run && ++count_ % 3 == 0;
+  }
+
+  bool overlooks(const std::string& channel, const std::string& bytes) {
+    if (channel != never_) return false;
+    if (overlooked_.empty()) overlooked_ = bytes;
+    return bytes == overlooked_;
+  }
+
   lcm::LogFile log_;
+  std::string never_;
+  std::string overlooked_;
   std::set<std::string> seen_;
   int count_ = 0;
   int forgotten_ = 0;
@@ -59,7 +76,8 @@ int main(int argc, char** argv) {
   sigaction(SIGTERM, &action, nullptr);
   lcm::LCM lcm(url);
   if (!lcm.good()) return 1;
-  Recorder recorder(argv[argc - 1]);
+  const char* never = std::getenv("NEXTVIEW_NEVER_RECORDED");
+  Recorder recorder(argv[argc - 1], never == nullptr ? "" : never);
   lcm.subscribeFunction(".*", Recorder::receive, &recorder)->setQueueCapacity(0);
   while (stop == 0) lcm.handleTimeout(50);
   std::cerr << "forgot " << recorder.forgotten() << " messages" << std::endl;

@@ -39,7 +39,7 @@ TEST(OwnRobot, RecoversWhatTheSimulatedOneDoes) {
   ASSERT_EQ(run.child("sensor_sim"), 0);
   ASSERT_EQ(run.child("base_sim"), 0);
   Program driver({program_path("driver"), after(run.output(), "bus: ", ','),
-                  after(run.output(), ", run ", '\n'), simulated.scene_file});
+                  after(run.output(), ", run ", '\n'), simulated.scene_file, "both"});
   ASSERT_EQ(run.wait(), 0) << run.output();
 
   EXPECT_EQ(column_of_views(folder / "own", "map_digest"),
@@ -52,6 +52,23 @@ TEST(OwnRobot, RecoversWhatTheSimulatedOneDoes) {
   EXPECT_EQ(summary.at("surface_coverage_unknown"),
             "there is no CAD model to hold the map against");
   EXPECT_EQ(summary.at("scene_file"), "");
+}
+
+// Nothing that it says is quite what the simulator would have said.
+TEST(OwnRobot, ThatComputesIn32BitsIsReplayedInThePlaceOfEither) {
+  for (const std::string place : {"base_sim", "sensor_sim"}) {
+    const TemporaryFolder folder;
+    Program run(run_arguments(folder / "run", 4, {"--without", place}));
+    ASSERT_TRUE(run.wait_for(", run ")) << run.output();
+    Program driver({program_path("driver"), after(run.output(), "bus: ", ','),
+                    after(run.output(), ", run ", '\n'),
+                    NEXTVIEW_SOURCE_DIR "/scenes/boxes/boxes.obj", place, "float32"});
+    ASSERT_EQ(run.wait(), 0) << run.output();
+    const Outcome replay = replay_folder(folder / "run", {"--planner"});
+    EXPECT_EQ(replay.status, 0) << place << ": " << replay.output;
+    EXPECT_NE(replay.output.find("4 views replayed"), std::string::npos) << replay.output;
+    EXPECT_NE(replay.output.find("of one's own"), std::string::npos) << replay.output;
+  }
 }
 
 TEST(OwnRobot, ThatDoesNotAnswerIsNamed) {

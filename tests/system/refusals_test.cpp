@@ -92,6 +92,11 @@ TEST(Refusals, ForAnotherReasonAreCountedApart) {
   EXPECT_EQ(summary.at("collisions"), 1);
   EXPECT_EQ(summary.at("other_refusals"), 2);
   EXPECT_EQ(column_of_views(folder / "run", "attempt"), (std::vector<std::string>{"1", "4", "1"}));
+  const Outcome replay = replay_folder(folder / "run", {"--planner"});
+  EXPECT_EQ(replay.status, 0) << replay.output;
+  EXPECT_NE(replay.output.find("NEXTVIEW_ARRIVAL (what a robot of one's own says is believed)"),
+            std::string::npos)
+      << replay.output;
 }
 
 }  // namespace
