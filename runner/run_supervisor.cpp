@@ -87,7 +87,9 @@ RunSupervisor::~RunSupervisor() {
 FinishedRun RunSupervisor::carry_out(Clock::time_point program_start) {
   try {
     if (earlier_) take_up_again();
-    if (!earlier_ || !earlier_->is_whole()) {
+    if (earlier_ && earlier_->is_whole()) {
+      if (setup_.scene) start_scoring();  // only its tables are missing
+    } else {
       start_up();
       watch();
       complete_log();
@@ -301,10 +303,13 @@ void RunSupervisor::end_early(const EndsEarly& end) {
 }
 
 void RunSupervisor::put_log_in_order() {
-  if (!log_ || !recorder_began_anew_) return;
+  // A recorder that was killed just now leaves half a message, and no more than that is cut off.
+  constexpr std::int64_t kLongestEvent = 64 * 1024;
+  if (!log_) return;
   try {
     log_->read_on();
-    log_->cut_rest();
+    if (log_->bytes_left() <= kLongestEvent) log_->cut_rest();
+    if (!recorder_began_anew_) return;
     number_events(files_.log);
     for (const std::string& what : log_->contradictions()) {
       progress_.say("warning: who was started again says otherwise: " + what);
@@ -420,6 +425,20 @@ void RunSupervisor::check_on_processes() {
   if (casualty) stand_in_for(*casualty);
 }
 
+std::optional<std::string> RunSupervisor::why_log_ends_here() {
+  try {
+    recording();
+    if (log_) log_->cut_rest();
+  } catch (const LogError& error) {
+    return error.what();
+  }
+  return why_no_more_fits(files_.log);
+}
+
+std::int64_t RunSupervisor::messages_recorded() const {
+  return log_ ? static_cast<std::int64_t>(log_->record().held().size()) : 0;
+}
+
 void RunSupervisor::stand_in_for(const Casualty& casualty) {
   const std::string& role = casualty.role;
   const auto dies = [&](const std::string& why) {
@@ -430,16 +449,12 @@ void RunSupervisor::stand_in_for(const Casualty& casualty) {
   }
   const bool recorder = role == RunProcesses::kRecorder;
   if (recorder) {
-    recording();
-    if (log_) log_->cut_rest();
-    if (const auto why = why_no_more_fits(files_.log)) {
+    if (const auto why = why_log_ends_here()) {
       dies(fmt::format("{}: {}. Mend that, and go on with the run by --resume {}",
                        files_.log.string(), *why, folder_.path().string()));
     }
   }
-  const std::int64_t progress = !recorder ? heard_.record.committed_views()
-                                : log_    ? log_->counters().messages
-                                          : 0;
+  const std::int64_t progress = recorder ? messages_recorded() : heard_.record.committed_views();
   if (!restart_limit_.allows(role, progress)) {
     dies(fmt::format("It was started again {} times, and did not get on.", RestartLimit::kTries));
   }

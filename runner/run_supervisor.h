@@ -70,6 +70,8 @@ class RunSupervisor {
   void pump(std::chrono::milliseconds timeout);
   void check_on_processes();
   void stand_in_for(const Casualty& casualty);
+  std::optional<std::string> why_log_ends_here();
+  std::int64_t messages_recorded() const;
   void make_rows(std::chrono::milliseconds wait_for_scoring = std::chrono::milliseconds(0));
 
   RunOptions options_;

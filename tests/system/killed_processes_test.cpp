@@ -91,7 +91,7 @@ TEST_F(KilledProcesses, ThatKeepDyingEndTheRunByName) {
     int kills = 0;
     while (kill(role)) ++kills;
     EXPECT_EQ(run_->wait(), 6) << run_->output();
-    EXPECT_EQ(kills, RestartLimit::kTries + 1) << run_->output();
+    EXPECT_GT(kills, RestartLimit::kTries) << run_->output();
     EXPECT_TRUE(says("nextview_run: process_died: " + role + " was killed by signal 9 (Killed)"))
         << run_->output();
     EXPECT_TRUE(says("started again 3 times, and did not get on")) << run_->output();
