@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <system_error>
 #include <utility>
@@ -46,10 +47,14 @@ std::string write_artefacts(const FinishedRun& run, const ArtefactFiles& files) 
   }
 }
 
-/// A run that is to be taken up again and is over already, with all its artefacts.
+/// A run that is to be taken up again and is over already, with all its artefacts. One that was
+/// interrupted when its planner had just ended it has tables that say otherwise than its log.
 bool is_over(const nextview::EarlierRun& earlier, const ArtefactFiles& files) {
-  if (!earlier.is_whole() || !std::filesystem::exists(files.summary)) return false;
+  if (!earlier.is_whole()) return false;
   const nextview::stop_t& stop = *earlier.record().stop();
+  std::ifstream file(files.summary);
+  const auto summary = nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
+  if (!summary.is_object() || summary.value("stop_reason", "") != stop.stop_reason) return false;
   std::cout << files.log.string() << ": this run has ended, " << stop.stop_reason << " after "
             << stop.views << " views" << std::endl;
   return true;
