@@ -97,7 +97,8 @@ std::chrono::milliseconds BaseSimProcess::longest_wait() const {
 
 void BaseSimProcess::ask_again() {
   goals_.erase(goals_.begin(), goals_.lower_bound(next_));  // of attempts that are over
-  if (goals_.empty()) return;  // nobody has gone on to a later goal: there is none to ask for
+  // Nobody has gone on to a later goal: there is none to ask for.
+  if (goals_.empty() && !behind()) return;
   bus_.request<goal_t>(next_.view, next_.attempt);
   asked_for_ = next_;
 }

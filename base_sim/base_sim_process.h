@@ -28,8 +28,9 @@ class BaseSimProcess : public BusProcess {
   /// Moves to the next goal, or says that it is there.
   bool step() override;
   std::chrono::milliseconds longest_wait() const override;
-  /// Asks for the next goal, when later ones have come.
+  /// Asks for the next goal, when later ones have come, or must have before it was started.
   void ask_again() override;
+  bool behind() const override { return next_.view <= reached(); }
   void on_missing(const request_t& request) override;
 
  private:

@@ -19,8 +19,7 @@ void request_stop(int /*signal*/) { stop_requested = 1; }
 void end_on_signals() {
   struct sigaction action {};
   action.sa_handler = request_stop;  // without SA_RESTART: a wait is interrupted
-  sigaction(SIGINT, &action, nullptr);
-  sigaction(SIGTERM, &action, nullptr);
+  for (const int number : {SIGINT, SIGTERM, SIGHUP}) sigaction(number, &action, nullptr);
 }
 
 }  // namespace
@@ -32,11 +31,15 @@ int run_bus_process(int argc, char** argv, const std::string& role, const std::s
   CLI::App app{about};
   std::string lcm_url;
   std::int64_t run = 0;
+  int catch_up = 0;
   app.add_option("--lcm-url", lcm_url,
                  "LCM URL of the run, such as udpm://239.255.76.67:7667?ttl=0; without it "
                  "LCM_DEFAULT_URL is used, else LCM's default");
   app.add_option("--run", run, "The run to take part in; messages of other runs are ignored")
       ->required();
+  app.add_option("--catch-up", catch_up,
+                 "Take the place of a process that has ended after the run had got to this view: "
+                 "what has been said up to there is asked for at once");
   if (real_time != nullptr) {
     app.add_option("--real-time", *real_time,
                    "Simulated seconds a second, for watching; what is said is the same. 0: at once")
@@ -47,15 +50,15 @@ int run_bus_process(int argc, char** argv, const std::string& role, const std::s
   app.set_version_flag("--version", program + " " + std::string(program_version()));
   app.footer(
       "Everything else comes from the run's configuration, NEXTVIEW_RUN_CONFIG on the bus,\n"
-      "which is asked for until somebody publishes it. SIGINT and SIGTERM end the process\n"
-      "cleanly, with exit status 0.");
+      "which is asked for until somebody publishes it. SIGINT, SIGTERM and SIGHUP end the\n"
+      "process cleanly, with exit status 0.");
   CLI11_PARSE(app, argc, argv);
   end_on_signals();
 
   std::optional<Bus> bus;
   try {
     bus.emplace(lcm_url, run, role);
-    serve(*bus, make, end_requested);
+    serve(*bus, make, end_requested, catch_up);
     return 0;
   } catch (const std::exception& error) {
     if (end_requested()) return 0;  // what was given up for that is no failure

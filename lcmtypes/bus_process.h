@@ -21,23 +21,37 @@ class BusProcess {
   virtual std::chrono::milliseconds longest_wait() const {
     return std::chrono::milliseconds::max();
   }
-  /// Requests what it waits for. Called on a timer, ever less often until something comes.
+  /// Requests what it waits for. Called on a timer, ever less often until something comes; at once
+  /// while it is behind the run.
   virtual void ask_again() {}
+  /// Whether it waits for a message of a view that the run had got to before it was started.
+  virtual bool behind() const { return false; }
   /// Somebody waits for a message that has not been published: asks for its own input when the
   /// message is one it will publish.
   virtual void on_missing(const request_t& request) = 0;
+
+  /// It takes the place of one that has ended after the run had got to this view: everything up to
+  /// there has been said, and is to be had for the asking.
+  void catch_up_to(int view) { reached_ = view; }
+
+ protected:
+  /// The view the run had got to before it was started; 0 in a run that begins.
+  int reached() const { return reached_; }
+
+ private:
+  int reached_ = 0;
 };
 
 using MakeBusProcess =
     std::function<std::unique_ptr<BusProcess>(Bus& bus, const run_config_t& config)>;
 
-/// Whether SIGINT or SIGTERM has asked this process, run by run_bus_process, to end: for work that
-/// takes long and would better be given up.
+/// Whether SIGINT, SIGTERM or SIGHUP has asked this process, run by run_bus_process, to end: for
+/// work that takes long and would better be given up.
 bool end_requested();
 
-/// The main of a process: parses the command line (--lcm-url, --run), asks for the run's
-/// configuration until it comes, makes the process, says by a status_t that it is there, and serves
-/// the bus until SIGINT or SIGTERM. Answers requests for status_t.
+/// The main of a process: parses the command line (--lcm-url, --run, --catch-up), asks for the
+/// run's configuration until it comes, makes the process, says by a status_t that it is there, and
+/// serves the bus until SIGINT, SIGTERM or SIGHUP. Answers requests for status_t.
 /// @param about what --help says first
 /// @param real_time of a simulator: takes --real-time, see RealTime, before the process is made
 /// @return the exit status: 0 after a signal; 1 after an error, which is printed in one line and

@@ -46,10 +46,11 @@ void publish_status(Bus& bus, const std::string& failure) {
   bus.publish(status);
 }
 
-void serve(Bus& bus, const MakeBusProcess& make, const std::function<bool()>& ended) {
+void serve(Bus& bus, const MakeBusProcess& make, const std::function<bool()>& ended, int catch_up) {
   const std::optional<run_config_t> config = wait_for_config(bus, ended);
   if (!config) return;
   const std::unique_ptr<BusProcess> process = make(bus, *config);
+  process->catch_up_to(catch_up);
   bus.on_missing([&bus, &process](const request_t& request) {
     if (request.wanted_channel == Channel<status_t>::name) {
       publish_status(bus, "");
@@ -60,11 +61,15 @@ void serve(Bus& bus, const MakeBusProcess& make, const std::function<bool()>& en
   publish_status(bus, "");
 
   AskTimer timer = ask_timer();
+  bool asked = false;
   while (!ended()) {
     if (process->step()) {
       timer.restart();
+      asked = false;
       continue;
     }
+    if (!asked && process->behind()) process->ask_again();
+    asked = true;
     const std::int64_t delivered = bus.counters().delivered;
     // All that is there, so that no step is taken on half of what has been said.
     for (bool more = bus.handle(std::min(timer.left(), process->longest_wait()));

@@ -9,13 +9,15 @@
 namespace nextview {
 
 struct LogReader::File {
-  explicit File(const std::filesystem::path& path) : log(lcm_eventlog_create(path.c_str(), "r")) {
+  explicit File(const std::filesystem::path& file)
+      : path(file), log(lcm_eventlog_create(file.c_str(), "r")) {
     if (log == nullptr) throw LogError(path.string() + ": cannot be opened");
   }
   File(const File&) = delete;
   File& operator=(const File&) = delete;
   ~File() { lcm_eventlog_destroy(log); }
 
+  std::filesystem::path path;
   lcm_eventlog_t* log;
   long end_of_last = 0;  // where the last whole message ends
 };
@@ -51,10 +53,24 @@ std::optional<LoggedMessage> LogReader::next() {
   return message;
 }
 
+std::int64_t LogReader::position() const { return file_->end_of_last; }
+void LogReader::seek(std::int64_t position) { file_->end_of_last = position; }
+
 std::int64_t LogReader::bytes_left() const {
   struct stat status {};
   if (::fstat(::fileno(file_->log->f), &status) != 0) return 0;
   return status.st_size - file_->end_of_last;
+}
+
+void LogReader::cut_rest() {
+  if (bytes_left() <= 0) return;
+  std::error_code error;
+  std::filesystem::resize_file(file_->path, static_cast<std::uintmax_t>(file_->end_of_last), error);
+  if (error) throw LogError(file_->path.string() + ": " + error.message());
+  // Opened anew, because what has been read of the rest stays in the stream's buffer.
+  auto anew = std::make_unique<File>(file_->path);
+  anew->end_of_last = file_->end_of_last;
+  file_ = std::move(anew);
 }
 
 }  // namespace nextview

@@ -34,9 +34,18 @@ class LogReader {
   /// The next message; nothing at the end, where it may be called again when the file has grown.
   std::optional<LoggedMessage> next();
 
-  /// Bytes behind the last whole message: a message being written, a log that was cut off, or
+  /// Where the last message read ends, and the next one is looked for.
+  std::int64_t position() const;
+  /// Goes there, to where a message ends.
+  void seek(std::int64_t position);
+
+  /// Bytes behind the last message read: a message being written, a log that was cut off, or
   /// something that is no log.
   std::int64_t bytes_left() const;
+  /// Cuts them off, so that a recorder can go on behind the last whole message. Nobody may be
+  /// writing.
+  /// @throws LogError when the file cannot be changed
+  void cut_rest();
 
  private:
   struct File;  // hides LCM's headers

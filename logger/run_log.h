@@ -49,6 +49,8 @@ class RunLog {
   const std::vector<std::string>& later_ends() const { return later_ends_; }
   /// Bytes at the end that are no whole message.
   std::int64_t bytes_left() const { return reader_.bytes_left(); }
+  /// Cuts them off; see LogReader.
+  void cut_rest() { reader_.cut_rest(); }
 
  private:
   /// 128-bit hash of a message's bytes.

@@ -46,6 +46,8 @@ class RunRecord {
   void add(const commit_t& commit);
   /// The first end counts: a run that has ended cannot end again.
   void add(const stop_t& stop);
+  /// The run is taken up again: its end is none any more.
+  void forget_stop() { stop_.reset(); }
   void add(const timing_t& timing);
   void add(const status_t& status) { roles_.insert(status.role); }
 

@@ -76,7 +76,7 @@ bool MapperProcess::publish_blocks() {
 }
 
 void MapperProcess::ask_again() {
-  if (!waiting_.empty()) bus_.request<range_image_t>(next_view_, 0);
+  if (!waiting_.empty() || behind()) bus_.request<range_image_t>(next_view_, 0);
 }
 
 void MapperProcess::on_missing(const request_t& request) {

@@ -23,8 +23,10 @@ class MapperProcess : public BusProcess {
   /// Folds the range image of the next view; else publishes the next part of the map that somebody
   /// has asked for.
   bool step() override;
-  /// Asks for the view that later ones, already here, wait for.
+  /// Asks for the view that later ones, already here, wait for; or, when it has been started again,
+  /// for the next one it has not folded yet.
   void ask_again() override;
+  bool behind() const override { return next_view_ <= reached(); }
   void on_missing(const request_t& request) override;
 
  private:

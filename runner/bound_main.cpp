@@ -57,6 +57,9 @@ void show(const ViewBound& bound) {
 }
 
 int bound(const nextview::RunOptions& options) {
+  if (!options.resume.empty()) {
+    throw nextview::SetupError("--resume is for nextview_run: name the scene of that run instead");
+  }
   const nextview::RunSetup setup = nextview::prepare_run(options);
   nextview::note_signals();  // not before: until here a signal may end this at once
   const nextview::ViewBoundQuestion question = nextview::bound_question_of(options, setup.config);

@@ -47,15 +47,17 @@ Pipe make_pipe(int flags) {
 
 /// What the child does between fork and exec: only calls that are safe there, because this process
 /// has threads. Reports errno through the pipe when it fails.
-[[noreturn]] void become(char* const* arguments, int at_death, pid_t parent, int output,
+[[noreturn]] void become(char* const* arguments, const ChildTerms& terms, pid_t parent, int output,
                          int report) {
   ::setpgid(0, 0);
-  ::prctl(PR_SET_PDEATHSIG, at_death);
+  ::prctl(PR_SET_PDEATHSIG, terms.at_death == AtParentsDeath::Kill ? SIGKILL : SIGTERM);
   if (::getppid() != parent) ::_exit(127);  // the parent ended before the line above
   sigset_t none;
   ::sigemptyset(&none);
   ::sigprocmask(SIG_SETMASK, &none, nullptr);
   for (const int number : {SIGINT, SIGTERM, SIGHUP, SIGPIPE}) ::signal(number, SIG_DFL);
+  if (terms.nice_value) ::setpriority(PRIO_PROCESS, 0, *terms.nice_value);
+  if (terms.kept_open >= 0) ::fcntl(terms.kept_open, F_SETFD, 0);
   const int nothing = ::open("/dev/null", O_RDONLY);
   ::dup2(nothing, STDIN_FILENO);
   ::dup2(output, STDOUT_FILENO);
@@ -69,7 +71,7 @@ Pipe make_pipe(int flags) {
 }  // namespace
 
 ChildProcess::ChildProcess(std::string role, const std::vector<std::string>& arguments,
-                           AtParentsDeath at_death)
+                           const ChildTerms& terms)
     : role_(std::move(role)) {
   std::vector<char*> argv;
   argv.reserve(arguments.size() + 1);
@@ -77,12 +79,11 @@ ChildProcess::ChildProcess(std::string role, const std::vector<std::string>& arg
   argv.push_back(nullptr);
   Pipe output = make_pipe(O_CLOEXEC);
   Pipe report = make_pipe(O_CLOEXEC);
-  const int signal_at_death = at_death == AtParentsDeath::Kill ? SIGKILL : SIGTERM;
   const pid_t parent = ::getpid();
   pid_ = ::fork();
   if (pid_ < 0) throw last_error("fork");
   if (pid_ == 0) {
-    become(argv.data(), signal_at_death, parent, output.write.get(), report.write.get());
+    become(argv.data(), terms, parent, output.write.get(), report.write.get());
   }
   report.write.reset();
   int error = 0;

@@ -16,6 +16,13 @@ namespace nextview {
 /// What the kernel sends a child when this process ends, however it ends.
 enum class AtParentsDeath { Kill, Terminate };
 
+/// What a child gets of this process.
+struct ChildTerms {
+  AtParentsDeath at_death = AtParentsDeath::Kill;
+  int kept_open = -1;             ///< a file descriptor that it holds open until its end; -1: none
+  std::optional<int> nice_value;  ///< if this process may give it; else, and without, its own
+};
+
 /// A program started by this one, that cannot outlive it and whose words on stderr are kept.
 ///
 /// It runs in a process group of its own, so that Ctrl-C in a terminal reaches only this program,
@@ -27,7 +34,7 @@ class ChildProcess {
   /// @param arguments the program, looked up in PATH unless it has a slash, and its arguments
   /// @throws std::system_error when it cannot be started (no such program, say)
   ChildProcess(std::string role, const std::vector<std::string>& arguments,
-               AtParentsDeath at_death);
+               const ChildTerms& terms = {});
   ChildProcess(ChildProcess&&) noexcept = default;
   ChildProcess& operator=(ChildProcess&&) = delete;
   /// Kills it if it still runs.

@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 
 // What a program answers to --version; its last words when it cannot.
 std::string version_of(const std::string& program) {
-  ChildProcess child("program", {program, "--version"}, AtParentsDeath::Kill);
+  ChildProcess child("program", {program, "--version"});
   while (child.running()) ::usleep(1000);
   return child.last_lines().empty() ? child.how_it_ended() : child.last_lines().back();
 }

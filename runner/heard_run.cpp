@@ -1,5 +1,7 @@
 #include "runner/heard_run.h"
 
+#include <algorithm>
+
 namespace nextview {
 
 void HeardRun::listen(Bus& bus) {
@@ -19,7 +21,13 @@ void HeardRun::listen(Bus& bus) {
     last_commit = last_progress;
   });
   bus.on<stop_t>(add);
-  bus.on<timing_t>([this](const timing_t& timing) { record.add(timing); });
+  bus.on<timing_t>([this](const timing_t& timing) {
+    record.add(timing);
+    // One that has been started again gets on without saying anything new.
+    int& view = worked_on[timing.role];
+    if (timing.view > view) last_progress = Clock::now();
+    view = std::max(view, timing.view);
+  });
   bus.on<pace_t>([this](const pace_t& message) { pace.hear(message, Clock::now()); });
   bus.on<status_t>([this](const status_t& status) {
     statuses[status.role] = status;
@@ -29,6 +37,7 @@ void HeardRun::listen(Bus& bus) {
     if (request.wanted_channel == Channel<run_config_t>::name) {
       asked_for_config.insert(request.asker);
     }
+    if (on_missing) on_missing(request);
   });
 }
 

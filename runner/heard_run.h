@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <functional>
 #include <map>
 #include <optional>
 #include <set>
@@ -21,6 +22,7 @@ struct HeardRun {
   std::map<std::string, status_t> statuses;  ///< by role, as last heard
   std::set<std::string> fresh_statuses;      ///< roles heard of since this was cleared
   Clock::time_point last_progress;           ///< when something new of the run came
+  std::map<std::string, int> worked_on;      ///< by role: latest view it has said a timing of
   std::optional<Clock::time_point> first_goal;
   std::optional<Clock::time_point> last_commit;
 
@@ -28,6 +30,8 @@ struct HeardRun {
 
   /// Whether somebody who watches the run has paused it, so that nothing is to be waited for.
   bool paused() const;
+  /// Called with every request that this process's bus does not answer.
+  std::function<void(const request_t&)> on_missing;
 
   /// Has everything of the run that the bus delivers come here; this must outlive the bus's
   /// handlers and stay where it is.

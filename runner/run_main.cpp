@@ -1,11 +1,14 @@
-#include <fmt/chrono.h>
 #include <unistd.h>
 
+#include <cerrno>
 #include <csignal>
-#include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <system_error>
+#include <utility>
 
 #include "runner/exit_status.h"
 #include "runner/run_signals.h"
@@ -15,62 +18,67 @@ namespace {
 
 using nextview::ArtefactFiles;
 using nextview::FinishedRun;
-using nextview::SetupError;
 
-std::string today() { return fmt::format("{:%Y%m%d-%H%M%S}", fmt::localtime(std::time(nullptr))); }
-
-/// The folder for the run's artefacts, made if it is not there.
-std::filesystem::path make_folder(const nextview::RunOptions& options,
-                                  const std::string& scene_name) {
-  std::filesystem::path folder = options.out;
-  if (options.out.empty()) {
-    const auto stem = std::filesystem::path(options.runs_folder) /
-                      (scene_name + "-seed" + std::to_string(options.seed) + "-" + today());
-    folder = stem;
-    for (int i = 2; std::filesystem::exists(folder); ++i) {
-      folder = stem.string() + "-" + std::to_string(i);
-    }
+/// Writes a whole file or none, so that a run without it can be told from one that is over.
+void write_artefact(const std::filesystem::path& file, const FinishedRun& run,
+                    void (*write)(std::ostream&, const FinishedRun&)) {
+  const std::filesystem::path unfinished = file.string() + ".part";
+  std::ofstream out(unfinished);
+  write(out, run);
+  out.close();
+  std::error_code error(errno, std::generic_category());
+  if (out) {
+    std::filesystem::rename(unfinished, file, error);
+    if (!error) return;
   }
-  if (std::filesystem::exists(ArtefactFiles(folder).log)) {
-    throw SetupError("--out: " + folder.string() + " holds a run already: name another folder");
-  }
-  std::error_code error;
-  std::filesystem::create_directories(folder, error);
-  if (error || ::access(folder.c_str(), W_OK) != 0) {
-    throw SetupError("--out: " + folder.string() + " cannot be written to" +
-                     (error ? ": " + error.message() : ""));
-  }
-  return folder;
+  std::error_code ignored;
+  std::filesystem::remove(unfinished, ignored);
+  throw std::runtime_error("cannot write " + file.string() + ": " + error.message());
 }
 
-void write_artefacts(const FinishedRun& run, const ArtefactFiles& files) {
-  std::ofstream views(files.views);
-  nextview::write_views(views, run);
-  std::ofstream summary(files.summary);
-  nextview::write_summary(summary, run);
-  if (!views.flush() || !summary.flush()) {
-    throw std::runtime_error("cannot write " + files.views.string() + " and " +
-                             files.summary.string());
+/// @return why views.csv and summary.json could not be written; empty when they are
+std::string write_artefacts(const FinishedRun& run, const ArtefactFiles& files) {
+  try {
+    write_artefact(files.views, run, nextview::write_views);
+    write_artefact(files.summary, run, nextview::write_summary);
+    return {};
+  } catch (const std::exception& error) {
+    return error.what();
   }
 }
 
-int run(const nextview::RunOptions& options, nextview::RunSupervisor::Clock::time_point start) {
-  nextview::RunSetup setup = nextview::prepare_run(options);
-  const std::filesystem::path folder = make_folder(options, setup.config.scene_name);
-  const ArtefactFiles files(folder);
+/// A run that is to be taken up again and is over already, with all its artefacts. One that was
+/// interrupted when its planner had just ended it has tables that say otherwise than its log.
+bool is_over(const nextview::EarlierRun& earlier, const ArtefactFiles& files) {
+  if (!earlier.is_whole()) return false;
+  const nextview::stop_t& stop = *earlier.record().stop();
+  std::ifstream file(files.summary);
+  const auto summary = nlohmann::json::parse(file, nullptr, /*allow_exceptions=*/false);
+  if (!summary.is_object() || summary.value("stop_reason", "") != stop.stop_reason) return false;
+  std::cout << files.log.string() << ": this run has ended, " << stop.stop_reason << " after "
+            << stop.views << " views" << std::endl;
+  return true;
+}
+
+int carry_out(const nextview::RunOptions& options, nextview::RunSetup setup,
+              nextview::RunFolder folder, std::optional<nextview::EarlierRun> earlier,
+              nextview::RunSupervisor::Clock::time_point start) {
+  const ArtefactFiles files(folder.path());
   // Not before: a CAD file may take for ever to read, and until here there is nothing to save.
   nextview::note_signals();
   using Style = nextview::Progress::Style;
   nextview::Progress progress(std::cout, ::isatty(STDOUT_FILENO) ? Style::Bar : Style::Lines,
                               setup.config.planner.max_views);
   for (const std::string& warning : setup.warnings) progress.say("warning: " + warning);
-  nextview::RunSupervisor supervisor(options, std::move(setup), folder, progress);
+  nextview::RunSupervisor supervisor(options, std::move(setup), std::move(folder),
+                                     std::move(earlier), progress);
   const FinishedRun finished = supervisor.carry_out(start);
   progress.finish();
-  write_artefacts(finished, files);
+  const std::string unwritten = write_artefacts(finished, files);
   nextview::write_table(std::cout, finished);
   std::cout << "  " << files.log.string() << "\n  " << files.views.string() << "\n  "
             << files.summary.string() << std::endl;
+  if (!unwritten.empty()) std::cerr << "nextview_run: " << unwritten << std::endl;
   if (nextview::noted_signal() != 0) return 128 + nextview::noted_signal();
   const int status = nextview::exit_status(finished.stop_reason);
   if (status != 0) {
@@ -78,7 +86,23 @@ int run(const nextview::RunOptions& options, nextview::RunSupervisor::Clock::tim
               << std::endl;
   }
   supervisor.show_until_closed();
-  return status;
+  return status == 0 && !unwritten.empty() ? 1 : status;
+}
+
+int run(const nextview::RunOptions& options, nextview::RunSupervisor::Clock::time_point start) {
+  if (!options.resume.empty()) {
+    auto folder = nextview::RunFolder::of_earlier_run(options.resume);
+    const ArtefactFiles files(folder.path());
+    nextview::EarlierRun earlier(files.log);
+    if (is_over(earlier, files)) return 0;
+    nextview::RunSetup setup = nextview::set_up_again(earlier.config());
+    nextview::RunOptions resumed = options;
+    if (!earlier.config().has_scene) resumed.without = {"sensor_sim", "base_sim"};
+    return carry_out(resumed, std::move(setup), std::move(folder), std::move(earlier), start);
+  }
+  nextview::RunSetup setup = nextview::prepare_run(options);
+  auto folder = nextview::RunFolder::make(options, setup.config.scene_name);
+  return carry_out(options, std::move(setup), std::move(folder), std::nullopt, start);
 }
 
 }  // namespace

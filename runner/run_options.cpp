@@ -6,6 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <iostream>
+#include <set>
 
 #include "lcmtypes/parameter_bounds.h"
 #include "lcmtypes/program_version.h"
@@ -136,6 +137,11 @@ void add_run_options(CLI::App& app, RunOptions& options) {
       ->group(group);
   app.add_flag("--quality", options.quality,
                "Look for quality too (paper eq. 4) and go on until every voxel has it")
+      ->group(group);
+  app.add_option("--resume", options.resume,
+                 "Go on with the run in this folder, which was killed or interrupted. Its "
+                 "configuration is in its log; only options that are not part of it may be given")
+      ->type_name("DIR")
       ->group(group);
   app.add_option("--out", options.out,
                  "Folder for run.lcmlog, views.csv and summary.json; default "
@@ -385,6 +391,20 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
       ->group(group);
 }
 
+/// What may be said beside --resume, and is not in the log.
+/// @throws CLI::ValidationError naming an option that is
+void check_resume(const CLI::App& app, RunOptions& options) {
+  if (options.resume.empty()) return;
+  const std::set<std::string> free = {"--resume",    "--without", "--planner",     "--lcm-url",
+                                      "--patience",  "--cache",   "--no-coverage", "--verbose",
+                                      "--real-time", "--view",    "--paused"};
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->count() == 0 || free.contains(option->get_name())) continue;
+    throw CLI::ValidationError(
+        "--resume", "leave out " + option->get_name() + ": the run's configuration is in its log");
+  }
+}
+
 /// A folder of data: of an installation, beside its bin; else of the sources.
 std::string data_folder(const std::string& name, const char* of_sources) {
   namespace fs = std::filesystem;
@@ -415,6 +435,7 @@ std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_sta
       "  ./run --view                           watched in a browser\n"
       "  ./run --without sensor_sim,base_sim --start 1 2 1.2 --workspace 0 0 0 8 6 3\n"
       "                                         a robot of yours, see README\n"
+      "  ./run --resume runs/boxes-seed1-DATE   goes on with a run that was killed\n"
       "  ./run hall.stl --unit cm --up y --start 4 4 1.5 --voxel-size 0.05\n\n"
       "Exit status: 0 the stop rule or the number of views was reached; 1 the run could not\n"
       "start; 3 no feasible goal; 4 mapper and planner hold different maps; 5 somebody did not\n"
@@ -436,6 +457,7 @@ std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_sta
     if (options.paused && !options.view) {
       throw CLI::ValidationError("--paused", "needs --view, whose page lets the run go on");
     }
+    check_resume(app, options);
   } catch (const CLI::ParseError& error) {
     exit_status = app.exit(error);
     return std::nullopt;
@@ -444,7 +466,7 @@ std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_sta
     exit_status = 1;
     return std::nullopt;
   }
-  options.bound_command = bound_command_for(argc, argv);
+  if (options.resume.empty()) options.bound_command = bound_command_for(argc, argv);
   return options;
 }
 

@@ -34,7 +34,8 @@ struct RunOptions {
   bool quality = false;
   double structure_weight = kFactors[kStructureFactor].default_weight;
   double navigation_weight = kFactors[kNavigationFactor].default_weight;
-  std::string out;  ///< folder of the run; empty: a new one in runs_folder
+  std::string resume;  ///< folder of a run to be taken up again; empty: a new run begins
+  std::string out;     ///< folder of the run; empty: a new one in runs_folder
   std::string runs_folder = "runs";
 
   std::string sensor = "paper";  ///< a name in sensors_folder, or a file

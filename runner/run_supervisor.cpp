@@ -15,7 +15,9 @@
 
 #include "base_sim/base.h"
 #include "lcmtypes/ask_timer.h"
+#include "logger/event_numbers.h"
 #include "mapper/mapper_config.h"
+#include "runner/disk_room.h"
 #include "runner/give_way.h"
 #include "runner/log_completion.h"
 #include "runner/run_signals.h"
@@ -67,15 +69,17 @@ void take_end(const stop_t& stop, FinishedRun& run) {
 
 }  // namespace
 
-RunSupervisor::RunSupervisor(const RunOptions& options, RunSetup setup,
-                             const std::filesystem::path& folder, Progress& progress)
+RunSupervisor::RunSupervisor(const RunOptions& options, RunSetup setup, RunFolder folder,
+                             std::optional<EarlierRun> earlier, Progress& progress)
     : options_(options),
       answering_(answering_roles(options.without)),
       setup_(std::move(setup)),
-      files_(folder),
+      folder_(std::move(folder)),
+      files_(folder_.path()),
+      earlier_(std::move(earlier)),
       progress_(progress),
       rows_(setup_.config) {
-  setup_.config.run = new_run_number();
+  if (!earlier_) setup_.config.run = new_run_number();
 }
 
 RunSupervisor::~RunSupervisor() {
@@ -84,10 +88,15 @@ RunSupervisor::~RunSupervisor() {
 
 FinishedRun RunSupervisor::carry_out(Clock::time_point program_start) {
   try {
-    start_up();
-    watch();
-    complete_log();
-    collect_statuses();
+    if (earlier_) take_up_again();
+    if (earlier_ && earlier_->is_whole()) {
+      if (setup_.scene) start_scoring();  // only its tables are missing
+    } else {
+      start_up();
+      watch();
+      complete_log();
+      collect_statuses();
+    }
   } catch (const EndsEarly& end) {
     end_early(end);
   } catch (const BusError& error) {
@@ -119,9 +128,28 @@ void RunSupervisor::pump_until(const Condition& condition) {
   }
 }
 
+void RunSupervisor::take_up_again() {
+  heard_.record.add(setup_.config);
+  earlier_->tell([this](const auto& message) {
+    try {
+      heard_.record.add(message);
+    } catch (const RejectedMessage&) {
+      return;  // as when it was said
+    }
+    make_rows();  // no range image is kept for longer than it is needed
+  });
+  reached_ = heard_.record.latest_view();
+  heard_.on_missing = [this](const request_t& request) { earlier_->answer(*bus_, request); };
+  recorder_began_anew_ = true;
+  recording();
+  logged_before_ = log_->counters().ours;
+  progress_.say(fmt::format("goes on after view {}", heard_.record.committed_views()));
+}
+
 void RunSupervisor::start_up() {
   join_bus();
-  processes_.emplace(lcm_url_, setup_.config.run, files_.log, answering_, options_.real_time);
+  processes_.emplace(lcm_url_, setup_.config.run, files_.log, answering_, reached_, folder_.lock(),
+                     options_.real_time);
   if (options_.verbose || !options_.without.empty()) {
     progress_.say(fmt::format("bus: {}, run {}", lcm_url_, setup_.config.run));
   }
@@ -141,11 +169,14 @@ void RunSupervisor::start_up() {
   bus_->publish(setup_.config);
   heard_.last_progress = Clock::now();
   if (setup_.scene) start_scoring();
-  // Each says so when it has loaded what it needs; only then is there somebody to hear a goal.
-  pump_until([&] { return all_of(answering, heard_.fresh_statuses); });
+  // Each says so when it has loaded what it needs; only then is there somebody to hear a goal. With
+  // its configuration in the log a run can be taken up again, whatever becomes of this process.
+  AskTimer config_again = reminder_after(milliseconds(20));
+  pump_until(
+      [&] { return config_recorded(config_again) && all_of(answering, heard_.fresh_statuses); });
   // Who has paused the run before its first view may not be heard by a planner that only starts.
-  pump_until([&] { return !heard_.pace.holds(1, Clock::now()); });
-  processes_->start_planner(options_.planner);
+  pump_until([&] { return !heard_.pace.holds(reached_ + 1, Clock::now()); });
+  processes_->start_planner(options_.planner, reached_);
   for (const std::string& note : setup_.notes) progress_.say(note);
   heard_.last_progress = Clock::now();
 }
@@ -170,7 +201,14 @@ bool RunSupervisor::recording() {
     log_.emplace(files_.log, setup_.config.run, RangeImages::OnlyCount);
   }
   if (log_) log_->read_on();
-  return log_ && log_->counters().ours > 0;
+  return log_ && log_->counters().ours > logged_before_;
+}
+
+bool RunSupervisor::config_recorded(AskTimer& reminder) {
+  log_->read_on();
+  if (log_->record().config()) return true;
+  if (reminder.due()) bus_->publish(setup_.config);
+  return false;
 }
 
 void RunSupervisor::start_scoring() {
@@ -195,6 +233,7 @@ void RunSupervisor::watch() {
   const RunRecord& record = heard_.record;
   while (!record.stop() || !record.missing().empty()) {
     pump(milliseconds(20));
+    log_mending_.step(*log_, *bus_, heard_);
     make_rows();
     if (reminded_since != heard_.last_progress) {
       reminded_since = heard_.last_progress;
@@ -289,9 +328,27 @@ void RunSupervisor::end_early(const EndsEarly& end) {
   }
 }
 
+void RunSupervisor::put_log_in_order() {
+  // A recorder that was killed just now leaves half a message, and no more than that is cut off.
+  constexpr std::int64_t kLongestEvent = 64 * 1024;
+  if (!log_) return;
+  try {
+    log_->read_on();
+    if (log_->bytes_left() <= kLongestEvent) log_->cut_rest();
+    if (!recorder_began_anew_) return;
+    number_events(files_.log);
+    for (const std::string& what : log_->contradictions()) {
+      progress_.say("warning: who was started again says otherwise: " + what);
+    }
+  } catch (const LogError& error) {
+    progress_.say(error.what());
+  }
+}
+
 void RunSupervisor::end_processes(FinishedRun& run) {
   if (processes_) {
     processes_->end_all();
+    put_log_in_order();
     const auto lines = processes_->take_lines();  // lcm-logger says goodbye
     if (options_.verbose) {
       for (const std::string& line : lines) progress_.say(line);
@@ -409,9 +466,56 @@ void RunSupervisor::check_on_processes() {
     for (const std::string& line : viewer_->take_lines()) progress_.say(line);
   }
   if (!processes_) return;
-  const std::optional<std::string> casualty = processes_->casualty();
+  const std::optional<Casualty> casualty = processes_->casualty();
   for (const std::string& line : processes_->take_lines()) progress_.say(line);
-  if (casualty) throw EndsEarly{StopReason::ProcessDied, *casualty};
+  if (casualty) stand_in_for(*casualty);
+}
+
+std::optional<std::string> RunSupervisor::why_log_ends_here() {
+  try {
+    recording();
+    if (log_) log_->cut_rest();
+  } catch (const LogError& error) {
+    return error.what();
+  }
+  return why_no_more_fits(files_.log);
+}
+
+std::int64_t RunSupervisor::messages_recorded() const {
+  return log_ ? static_cast<std::int64_t>(log_->record().held().size()) : 0;
+}
+
+void RunSupervisor::stand_in_for(const Casualty& casualty) {
+  const std::string& role = casualty.role;
+  const auto dies = [&](const std::string& why) {
+    throw EndsEarly{StopReason::ProcessDied, casualty.account + "\n" + why};
+  };
+  if (role == RunProcesses::kPlanner && processes_->has_own_planner()) {
+    dies("A planner of your own is not started again: it might decide otherwise.");
+  }
+  const bool recorder = role == RunProcesses::kRecorder;
+  if (recorder) {
+    if (const auto why = why_log_ends_here()) {
+      dies(fmt::format("{}: {}. Mend that, and go on with the run by --resume {}",
+                       files_.log.string(), *why, folder_.path().string()));
+    }
+  }
+  const std::int64_t progress = recorder ? messages_recorded() : heard_.record.committed_views();
+  if (!restart_limit_.allows(role, progress)) {
+    dies(fmt::format("It was started again {} times, and did not get on.", RestartLimit::kTries));
+  }
+  progress_.say(casualty.account + "\nIt is started again.");
+  heard_.worked_on.erase(role);
+  heard_.last_progress = Clock::now();
+  try {
+    processes_->restart(role, heard_.record.latest_view());
+  } catch (const SetupError& error) {
+    dies(error.what());
+  }
+  if (recorder) {
+    recorder_began_anew_ = true;
+    log_mending_.begin();
+  }
 }
 
 }  // namespace nextview

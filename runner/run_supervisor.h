@@ -12,8 +12,12 @@
 #include "reports/progress.h"
 #include "reports/run_report.h"
 #include "runner/background_scoring.h"
+#include "runner/earlier_run.h"
 #include "runner/heard_run.h"
+#include "runner/log_mending.h"
 #include "runner/port_lock.h"
+#include "runner/restart_limit.h"
+#include "runner/run_folder.h"
 #include "runner/run_processes.h"
 #include "runner/run_setup.h"
 #include "runner/viewer_process.h"
@@ -28,8 +32,9 @@ class RunSupervisor {
   using Clock = HeardRun::Clock;
 
   /// @param folder of the artefacts, which must not hold a log yet
-  RunSupervisor(const RunOptions& options, RunSetup setup, const std::filesystem::path& folder,
-                Progress& progress);
+  /// @param earlier the run to be taken up again, whose log it holds; nothing: a new one begins
+  RunSupervisor(const RunOptions& options, RunSetup setup, RunFolder folder,
+                std::optional<EarlierRun> earlier, Progress& progress);
   ~RunSupervisor();
 
   /// Carries the run out.
@@ -45,10 +50,12 @@ class RunSupervisor {
     std::string detail;
   };
 
+  void take_up_again();
   void start_up();
   void join_bus();
   void start_viewer();
   bool recording();
+  bool config_recorded(AskTimer& reminder);
   void start_scoring();
   void watch();
   void complete_log();
@@ -57,6 +64,7 @@ class RunSupervisor {
   void wait_for_scoring();
   FinishedRun finish(Clock::time_point program_start);
   void end_processes(FinishedRun& run);
+  void put_log_in_order();
   std::string why_coverage_is_unknown() const;
   std::string why_precision_is_unknown() const;
   void add_bounds(FinishedRun& run) const;
@@ -67,12 +75,18 @@ class RunSupervisor {
   /// With --real-time: what the motion and scan under way may take without a word.
   double watched_motion_s() const;
   void check_on_processes();
+  void stand_in_for(const Casualty& casualty);
+  std::optional<std::string> why_log_ends_here();
+  std::int64_t messages_recorded() const;
   void make_rows(std::chrono::milliseconds wait_for_scoring = std::chrono::milliseconds(0));
 
   RunOptions options_;
   std::vector<std::string> answering_;  ///< roles of the processes that answer the planner
   RunSetup setup_;
+  RunFolder folder_;
   ArtefactFiles files_;
+  std::optional<EarlierRun> earlier_;
+  int reached_ = 0;  ///< the view the earlier run had got to
   Progress& progress_;
 
   HeardRun heard_;
@@ -82,7 +96,11 @@ class RunSupervisor {
   std::unique_ptr<Bus> bus_;
   std::optional<RunProcesses> processes_;
   std::optional<ViewerProcess> viewer_;
+  RestartLimit restart_limit_;
   std::optional<RunLog> log_;
+  std::int64_t logged_before_ = 0;  ///< messages of the run that were in the log at the start
+  LogMending log_mending_;
+  bool recorder_began_anew_ = false;
   std::optional<EndsEarly> ended_early_;
 
   std::optional<BackgroundScoring<NearSurface>> near_surface_;

@@ -83,6 +83,10 @@ std::chrono::milliseconds SensorSimProcess::longest_wait() const {
   return scanned_ ? real_time_.left() : BusProcess::longest_wait();
 }
 
+void SensorSimProcess::ask_again() {
+  if (behind()) bus_.request<arrival_t>(reached(), 0);
+}
+
 void SensorSimProcess::on_missing(const request_t& request) {
   if (request.wanted_channel != Channel<range_image_t>::name) return;
   if (scanned_ && scanned_->parts.front().view == request.view) return;  // it is on its way

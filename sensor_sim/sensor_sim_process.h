@@ -25,6 +25,10 @@ class SensorSimProcess : public BusProcess {
   /// Scans at the next arrival, or publishes what it has scanned.
   bool step() override;
   std::chrono::milliseconds longest_wait() const override;
+  /// Asks for the latest arrival when it has been started again; those before come when somebody
+  /// asks for their range images.
+  void ask_again() override;
+  bool behind() const override { return arrivals_.empty() && reached() > 0; }
   /// Scans again when a range image is asked for that the bus has forgotten: the same image.
   void on_missing(const request_t& request) override;
 

@@ -12,9 +12,7 @@
 namespace nextview {
 namespace {
 
-ChildProcess shell(const std::string& script) {
-  return {"shell", {"sh", "-c", script}, AtParentsDeath::Kill};
-}
+ChildProcess shell(const std::string& script) { return {"shell", {"sh", "-c", script}}; }
 
 void wait_for_end(ChildProcess& child) {
   const FileDescriptor handle(static_cast<int>(::syscall(SYS_pidfd_open, child.pid(), 0)));
@@ -118,8 +116,7 @@ TEST(ChildProcess, TellsHowMuchMemoryItHeld) {
 }
 
 TEST(ChildProcess, ThatIsNotThereIsAnError) {
-  EXPECT_THROW(ChildProcess("nobody", {"/no/such/program"}, AtParentsDeath::Kill),
-               std::system_error);
+  EXPECT_THROW(ChildProcess("nobody", {"/no/such/program"}), std::system_error);
 }
 
 TEST(ChildProcess, ThatIsNotThereIsAnErrorWhateverSignalsCome) {
@@ -132,7 +129,7 @@ TEST(ChildProcess, ThatIsNotThereIsAnErrorWhateverSignalsCome) {
   int errors = 0;
   for (int i = 0; i < 50; ++i) {
     try {
-      const ChildProcess nobody("nobody", {"/no/such/program"}, AtParentsDeath::Kill);
+      const ChildProcess nobody("nobody", {"/no/such/program"});
     } catch (const std::system_error&) {
       ++errors;
     }

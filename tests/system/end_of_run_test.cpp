@@ -112,31 +112,6 @@ TEST_F(LongRun, LeavesNothingBehindWhenItIsKilled) {
   EXPECT_NE(replay.output.find("the log lacks NEXTVIEW_STOP"), std::string::npos) << replay.output;
 }
 
-TEST_F(LongRun, SaysWhichProcessDied) {
-  for (const std::string role : {"sensor_sim", "base_sim", "mapper", "planner"}) {
-    start();
-    ASSERT_NE(run_->child(role), 0) << role;
-    ::kill(run_->child(role), SIGKILL);
-    EXPECT_EQ(run_->wait(), 6) << run_->output();
-    EXPECT_NE(run_->output().find(role + " was killed by signal 9"), std::string::npos)
-        << run_->output();
-    expect_nothing_left();
-    // A planner killed between a goal and its search never publishes the search, and what the
-    // recorder has missed of a dead process is gone: the replay then says what is missing.
-    expect_log_replays_with({0, 3}, "process_died");
-    std::filesystem::remove_all(folder_ / "run");
-  }
-}
-
-TEST_F(LongRun, SaysThatTheRecorderDied) {
-  start();
-  ::kill(run_->child("lcm-logger"), SIGKILL);
-  EXPECT_EQ(run_->wait(), 6) << run_->output();
-  EXPECT_NE(run_->output().find("lcm-logger was killed by signal 9"), std::string::npos)
-      << run_->output();
-  expect_nothing_left();
-}
-
 // Halted after the last view has been asked for, so that the planner ends the run as it should.
 TEST_F(LongRun, DoesNotWaitForEverForARecorderThatIsHalted) {
   start_program(run_arguments(

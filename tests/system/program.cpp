@@ -31,8 +31,7 @@ std::string name_of(pid_t pid) {
 
 }  // namespace
 
-Program::Program(const std::vector<std::string>& arguments)
-    : process_("program", arguments, AtParentsDeath::Kill) {}
+Program::Program(const std::vector<std::string>& arguments) : process_("program", arguments) {}
 
 bool Program::take_in() {
   const bool running = process_.running();
