@@ -27,7 +27,7 @@ void end_on_signals() {
 bool end_requested() { return stop_requested != 0; }
 
 int run_bus_process(int argc, char** argv, const std::string& role, const std::string& about,
-                    const MakeBusProcess& make) {
+                    const MakeBusProcess& make, const std::function<void(CLI::App&)>& add_options) {
   CLI::App app{about};
   std::string lcm_url;
   std::int64_t run = 0;
@@ -36,6 +36,7 @@ int run_bus_process(int argc, char** argv, const std::string& role, const std::s
                  "LCM_DEFAULT_URL is used, else LCM's default");
   app.add_option("--run", run, "The run to take part in; messages of other runs are ignored")
       ->required();
+  if (add_options) add_options(app);
   app.set_version_flag("--version", "nextview_" + role + " " + std::string(program_version()));
   app.footer(
       "Everything else comes from the run's configuration, NEXTVIEW_RUN_CONFIG on the bus,\n"

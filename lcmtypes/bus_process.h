@@ -6,6 +6,10 @@
 
 #include "lcmtypes/bus.h"
 
+namespace CLI {
+class App;
+}
+
 namespace nextview {
 
 /// What one process of a run does, apart from what they all do. Message handlers, set up in the
@@ -34,9 +38,12 @@ bool end_requested();
 /// configuration until it comes, makes the process, says by a status_t that it is there, and serves
 /// the bus until SIGINT or SIGTERM. Answers requests for status_t.
 /// @param about what --help says first
+/// @param add_options adds options of this process alone, such as have no influence on results: all
+///        others come with the configuration
 /// @return the exit status: 0 after a signal; 1 after an error, which is printed in one line and
 ///         published in a status_t; CLI11's after a wrong command line
 int run_bus_process(int argc, char** argv, const std::string& role, const std::string& about,
-                    const MakeBusProcess& make);
+                    const MakeBusProcess& make,
+                    const std::function<void(CLI::App&)>& add_options = {});
 
 }  // namespace nextview

@@ -15,10 +15,20 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+std::variant<MapBuilder, PagedMapBuilder> make_builder(const run_config_t& config,
+                                                       const std::optional<VoxelIndex>& window) {
+  const MapWindow whole = window_of(config);
+  if (window && (window->array() < whole.size.array()).any()) {
+    return PagedMapBuilder(grid_of(config), whole, *window);
+  }
+  return MapBuilder(grid_of(config), whole);
+}
+
 }  // namespace
 
-MapperProcess::MapperProcess(Bus& bus, const run_config_t& config)
-    : bus_(bus), config_(config), builder_(grid_of(config), window_of(config)) {
+MapperProcess::MapperProcess(Bus& bus, const run_config_t& config,
+                             const std::optional<VoxelIndex>& window)
+    : bus_(bus), config_(config), builder_(make_builder(config, window)) {
   bus_.on<range_image_t>([this](const range_image_t& part) { receive(part); });
 }
 
@@ -35,11 +45,13 @@ bool MapperProcess::step() {
   waiting_.erase(next);
 
   const auto start = Clock::now();
-  const FoldReport& report = builder_.fold(received.image);
+  const FoldCounts folded = std::visit(
+      [&](auto& builder) -> FoldCounts { return builder.fold(received.image); }, builder_);
   const double update_wall_s = seconds_since(start);
-  commit_t commit = commit_message(received, report, builder_.statistics());
+  const auto statistics = [](const auto& builder) { return builder.statistics(); };
+  commit_t commit = commit_message(received, folded, std::visit(statistics, builder_));
   const auto digest_start = Clock::now();
-  commit.map_digest = builder_.digest();
+  commit.map_digest = std::visit([](auto& builder) { return builder.digest(); }, builder_);
   const double digest_wall_s = seconds_since(digest_start);
   commit.history_digest = history_digest_ = history_digest(history_digest_, received);
   bus_.publish(commit);

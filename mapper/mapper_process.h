@@ -1,10 +1,13 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <string>
+#include <variant>
 
 #include "lcmtypes/bus_process.h"
 #include "mapper/map_builder.h"
+#include "mapper/paged_map_builder.h"
 #include "sensor/range_image_message.h"
 
 namespace nextview {
@@ -13,7 +16,10 @@ namespace nextview {
 /// a commit what the map is then.
 class MapperProcess : public BusProcess {
  public:
-  MapperProcess(Bus& bus, const run_config_t& config);
+  /// @param window voxels that are to lie open in memory (PagedMapBuilder); without it, or where it
+  ///        is no smaller than the map, all of the map lies in one buffer
+  MapperProcess(Bus& bus, const run_config_t& config,
+                const std::optional<VoxelIndex>& window = std::nullopt);
 
   /// Folds the range image of the next view.
   bool step() override;
@@ -26,7 +32,7 @@ class MapperProcess : public BusProcess {
 
   Bus& bus_;
   run_config_t config_;
-  MapBuilder builder_;
+  std::variant<MapBuilder, PagedMapBuilder> builder_;
   RangeImageAssembler assembler_;
   std::map<int, ReceivedRangeImage> waiting_;  // by view; the first attempt that came whole counts
   int next_view_ = 1;

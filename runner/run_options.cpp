@@ -227,6 +227,14 @@ void add_map_options(CLI::App& app, RunOptions& options) {
       ->check(number_in(0, 1000))
       ->capture_default_str()
       ->group(group);
+  app.add_option(
+         "--window", options.window_m,
+         "X Y Z, m: how much of the map the mapper has open in memory about the sensor; the "
+         "rest of what was seen is kept aside, packed. Default: all of it. The result does "
+         "not depend on it")
+      ->expected(3)
+      ->check(number_in(0.001, 8192.0))
+      ->group(group);
 }
 
 void add_planner_options(CLI::App& app, RunOptions& options) {

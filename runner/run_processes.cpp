@@ -21,7 +21,8 @@ std::vector<std::string> answering_roles(const std::vector<std::string>& without
 }
 
 RunProcesses::RunProcesses(std::string lcm_url, std::int64_t run, const std::filesystem::path& log,
-                           const std::vector<std::string>& answering)
+                           const std::vector<std::string>& answering,
+                           const std::vector<std::string>& mapper_options)
     : lcm_url_(std::move(lcm_url)), run_(run) {
   const auto recorder = find_in_path("lcm-logger");
   if (!recorder) {
@@ -37,7 +38,9 @@ RunProcesses::RunProcesses(std::string lcm_url, std::int64_t run, const std::fil
   } catch (const std::system_error& error) {
     throw SetupError(error.what());
   }
-  for (const std::string& role : answering) start(role);
+  for (const std::string& role : answering) {
+    start(role, role == "mapper" ? mapper_options : std::vector<std::string>());
+  }
 }
 
 void RunProcesses::start_planner(const std::filesystem::path& program) {
@@ -53,20 +56,21 @@ void RunProcesses::start_planner(const std::filesystem::path& program) {
   }
 }
 
-void RunProcesses::start(const std::string& role) {
+void RunProcesses::start(const std::string& role, const std::vector<std::string>& options) {
   const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   try {
-    start(role, folder / ("nextview_" + role));
+    start(role, folder / ("nextview_" + role), options);
   } catch (const std::system_error& error) {
     throw SetupError(std::string(error.what()) + ": build nextview again");
   }
 }
 
-void RunProcesses::start(const std::string& role, const std::filesystem::path& program) {
-  children_.emplace_back(role,
-                         std::vector<std::string>{program.string(), "--lcm-url=" + lcm_url_,
-                                                  "--run=" + std::to_string(run_)},
-                         AtParentsDeath::Kill);
+void RunProcesses::start(const std::string& role, const std::filesystem::path& program,
+                         const std::vector<std::string>& options) {
+  std::vector<std::string> command = {program.string(), "--lcm-url=" + lcm_url_,
+                                      "--run=" + std::to_string(run_)};
+  command.insert(command.end(), options.begin(), options.end());
+  children_.emplace_back(role, command, AtParentsDeath::Kill);
 }
 
 std::optional<std::string> RunProcesses::casualty() {

@@ -21,9 +21,11 @@ class RunProcesses {
   /// Starts lcm-logger, which must be in PATH, and the processes that answer the planner, which lie
   /// beside this program's own executable.
   /// @param answering their roles
+  /// @param mapper_options that nextview_mapper is started with
   /// @throws SetupError saying what cannot be started and what to do
   RunProcesses(std::string lcm_url, std::int64_t run, const std::filesystem::path& log,
-               const std::vector<std::string>& answering);
+               const std::vector<std::string>& answering,
+               const std::vector<std::string>& mapper_options = {});
 
   /// Starts the planner, and with it the run: when the others are ready, so that its first goal
   /// need not be asked for again.
@@ -45,8 +47,9 @@ class RunProcesses {
   std::map<std::string, std::int64_t> peak_memory_bytes() const;
 
  private:
-  void start(const std::string& role);
-  void start(const std::string& role, const std::filesystem::path& program);
+  void start(const std::string& role, const std::vector<std::string>& options = {});
+  void start(const std::string& role, const std::filesystem::path& program,
+             const std::vector<std::string>& options = {});
 
   std::string lcm_url_;
   std::int64_t run_;

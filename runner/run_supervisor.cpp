@@ -119,7 +119,7 @@ void RunSupervisor::pump_until(const Condition& condition) {
 
 void RunSupervisor::start_up() {
   join_bus();
-  processes_.emplace(lcm_url_, setup_.config.run, files_.log, answering_);
+  processes_.emplace(lcm_url_, setup_.config.run, files_.log, answering_, setup_.mapper_options);
   if (options_.verbose || !options_.without.empty()) {
     progress_.say(fmt::format("bus: {}, run {}", lcm_url_, setup_.config.run));
   }
