@@ -12,5 +12,5 @@ int main(int argc, char** argv) {
         return std::make_unique<nextview::BaseSimProcess>(bus, config, nextview::end_requested,
                                                           real_time);
       },
-      &real_time);
+      [&real_time](CLI::App& app) { nextview::add_real_time_option(app, real_time); });
 }

@@ -14,6 +14,7 @@
 #include "bench/stopwatch.h"
 #include "bench/textbook_map.h"
 #include "mapper/map_builder.h"
+#include "mapper/paged_map_builder.h"
 #include "mapper/ray_ends.h"
 #include "mapper/ray_marking.h"
 #include "mapper/reference_map_update.h"
@@ -71,6 +72,14 @@ void register_nextview(const RecoveredRoom& room) {
                     map.fold(room.scans()[i]);
                     benchmark::DoNotOptimize(map.digest());
                   });
+  // The same map, of which 1.6 m each way lie open.
+  const auto fresh_paged_map = [&room] {
+    const int open = static_cast<int>(std::lround(1.6 / room.voxel_size_m()));
+    return std::make_unique<PagedMapBuilder>(room.map().grid(), room.map().window(),
+                                             VoxelIndex::Constant(open));
+  };
+  register_update("nextview_window", room, fresh_paged_map,
+                  [&room](PagedMapBuilder& map, std::size_t i) { map.fold(room.scans()[i]); });
   const auto fresh_map = [&room] {
     return std::make_unique<VoxelMap>(room.map().grid(), room.map().window());
   };

@@ -6,6 +6,7 @@
 #include <iostream>
 #include <optional>
 
+#include "lcmtypes/parameter_bounds.h"
 #include "lcmtypes/program_version.h"
 #include "lcmtypes/serve.h"
 
@@ -26,8 +27,15 @@ void end_on_signals() {
 
 bool end_requested() { return stop_requested != 0; }
 
+void add_real_time_option(CLI::App& app, double& real_time) {
+  app.add_option("--real-time", real_time,
+                 "Simulated seconds a second, for watching; what is said is the same. 0: at once")
+      ->check(CLI::Range(0.0, bounds::kRealTime.most))
+      ->capture_default_str();
+}
+
 int run_bus_process(int argc, char** argv, const std::string& role, const std::string& about,
-                    const MakeBusProcess& make, double* real_time) {
+                    const MakeBusProcess& make, const std::function<void(CLI::App&)>& add_options) {
   CLI::App app{about};
   std::string lcm_url;
   std::int64_t run = 0;
@@ -40,12 +48,7 @@ int run_bus_process(int argc, char** argv, const std::string& role, const std::s
   app.add_option("--catch-up", catch_up,
                  "Take the place of a process that has ended after the run had got to this view: "
                  "what has been said up to there is asked for at once");
-  if (real_time != nullptr) {
-    app.add_option("--real-time", *real_time,
-                   "Simulated seconds a second, for watching; what is said is the same. 0: at once")
-        ->check(CLI::Range(0.0, 1e6))
-        ->capture_default_str();
-  }
+  if (add_options) add_options(app);
   const std::string program = std::filesystem::path(argv[0]).filename();
   app.set_version_flag("--version", program + " " + std::string(program_version()));
   app.footer(

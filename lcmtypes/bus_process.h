@@ -7,6 +7,10 @@
 
 #include "lcmtypes/bus.h"
 
+namespace CLI {
+class App;
+}
+
 namespace nextview {
 
 /// What one process of a run does, apart from what they all do. Message handlers, set up in the
@@ -49,14 +53,19 @@ using MakeBusProcess =
 /// work that takes long and would better be given up.
 bool end_requested();
 
+/// Of a simulator, for run_bus_process: --real-time, see RealTime.
+void add_real_time_option(CLI::App& app, double& real_time);
+
 /// The main of a process: parses the command line (--lcm-url, --run, --catch-up), asks for the
 /// run's configuration until it comes, makes the process, says by a status_t that it is there, and
 /// serves the bus until SIGINT, SIGTERM or SIGHUP. Answers requests for status_t.
 /// @param about what --help says first
-/// @param real_time of a simulator: takes --real-time, see RealTime, before the process is made
+/// @param add_options adds options of this process alone, such as have no influence on results: all
+///        others come with the configuration
 /// @return the exit status: 0 after a signal; 1 after an error, which is printed in one line and
 ///         published in a status_t; CLI11's after a wrong command line
 int run_bus_process(int argc, char** argv, const std::string& role, const std::string& about,
-                    const MakeBusProcess& make, double* real_time = nullptr);
+                    const MakeBusProcess& make,
+                    const std::function<void(CLI::App&)>& add_options = {});
 
 }  // namespace nextview

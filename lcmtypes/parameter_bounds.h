@@ -115,6 +115,7 @@ inline constexpr Bounds kStopImprovement{"stop_improvement", 0.0, 1.0};
 // Of ./run and nextview_bound alone.
 inline constexpr Bounds kMarginVoxels{"margin_voxels", 0, 1000};
 inline constexpr Bounds kPatience{"patience_s", 0.1, 1e6};
+inline constexpr Bounds kWindow{"window_m", 0.001, kWorkspace.most};
 inline constexpr Bounds kRealTime{"real_time", 0.001, 1e6};
 inline constexpr Bounds kBoundSpacing{"spacing_m", 0.05, 100.0};
 

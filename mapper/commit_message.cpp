@@ -9,7 +9,7 @@ std::int64_t count(const MapStatistics& statistics, Label label) {
 
 }  // namespace
 
-commit_t commit_message(const ReceivedRangeImage& received, const FoldReport& report,
+commit_t commit_message(const ReceivedRangeImage& received, const FoldCounts& folded,
                         const MapStatistics& statistics) {
   commit_t commit{};
   commit.utime = received.utime;
@@ -25,15 +25,15 @@ commit_t commit_message(const ReceivedRangeImage& received, const FoldReport& re
   commit.occlusion_plane_voxels = count(statistics, Label::OcclusionPlane);
   commit.empty_voxels = count(statistics, Label::Empty);
   commit.occupied_voxels = count(statistics, Label::Occupied);
-  commit.newly_occupied_voxels = report.newly_occupied;
+  commit.newly_occupied_voxels = folded.newly_occupied;
   commit.occupied_area_m2 = statistics.occupied_area_m2;
   commit.occlusion_plane_area_m2 = statistics.occlusion_plane_area_m2;
   commit.mean_quality = statistics.mean_quality;
   commit.min_quality = statistics.min_quality;
-  commit.points = report.points;
-  commit.points_outside = report.points_outside;
-  commit.no_returns = report.no_returns;
-  commit.invalid = report.invalid;
+  commit.points = folded.points;
+  commit.points_outside = folded.points_outside;
+  commit.no_returns = folded.no_returns;
+  commit.invalid = folded.invalid;
   return commit;
 }
 

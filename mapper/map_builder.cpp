@@ -105,20 +105,7 @@ const VoxelMap& MapBuilder::map() const { return state_->map; }
 
 MapStatistics MapBuilder::statistics() const {
   const State& s = *state_;
-  MapStatistics statistics;
-  for (std::size_t label = 0; label < kLabelCount; ++label) {
-    statistics.voxels[label] = s.census.voxels(static_cast<Label>(label));
-  }
-  statistics.occupied_faces = s.census.occupied_faces();
-  statistics.occlusion_plane_faces = s.census.occlusion_plane_faces();
-  const double face_m2 = s.map.grid().voxel_size_m * s.map.grid().voxel_size_m;
-  statistics.occupied_area_m2 = static_cast<double>(statistics.occupied_faces) * face_m2;
-  statistics.occlusion_plane_area_m2 =
-      static_cast<double>(statistics.occlusion_plane_faces) * face_m2;
-  const std::int64_t occupied = s.census.voxels(Label::Occupied);
-  statistics.mean_quality = s.quality.mean(occupied);
-  statistics.min_quality = s.quality.min(occupied);
-  return statistics;
+  return map_statistics(s.census.totals(), s.quality, s.map.grid().voxel_size_m);
 }
 
 std::string MapBuilder::digest() { return state_->digest.digest(state_->map, state_->blocks); }

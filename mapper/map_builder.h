@@ -1,43 +1,25 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
 #include <vector>
 
+#include "mapper/map_statistics.h"
 #include "mapper/voxel_map.h"
 #include "sensor/range_image.h"
 
 namespace nextview {
 
-/// What folding one range image did.
-struct FoldReport {
-  std::int64_t points = 0;          ///< points inside the window
-  std::int64_t points_outside = 0;  ///< points outside the window
-  std::int64_t no_returns = 0;      ///< known free up to the sensor's largest range (RangeKind)
-  std::int64_t invalid = 0;         ///< nothing known
-  std::int64_t newly_occupied = 0;  ///< voxels that became Occupied
+/// What folding one range image did to a map that lies in one buffer.
+struct FoldReport : FoldCounts {
   /// Slots (VoxelMap::slot) whose label differs from before the fold, each once; in a fixed order
   /// that depends on the image and the map alone.
   std::vector<std::uint32_t> changed_slots;
   /// Slots of the voxels whose surface data differs from before the fold, each once; in a fixed
   /// order.
   std::vector<std::uint32_t> updated_surfaces;
-};
-
-/// What a commit says about a map.
-struct MapStatistics {
-  std::array<std::int64_t, kLabelCount> voxels = {};  ///< by Label; they sum to the window's volume
-  std::int64_t occupied_faces = 0;         ///< faces of Occupied voxels that touch an Empty voxel
-  std::int64_t occlusion_plane_faces = 0;  ///< the same of OcclusionPlane voxels
-  double occupied_area_m2 = 0.0;           ///< P13: faces times a face's area
-  double occlusion_plane_area_m2 = 0.0;
-  /// Over the Occupied voxels, in [0, 1]; a voxel none of whose points had a normal counts as 0.
-  /// Both are 0 when no voxel is Occupied.
-  double mean_quality = 0.0;
-  double min_quality = 0.0;
 };
 
 /// A voxel map and everything that is kept right with every range image folded into it: labels,

@@ -52,10 +52,8 @@ MapCensus::MapCensus(const VoxelMap& map, const MapBlocks& blocks)
     : counts_(blocks.size()),
       empty_(std::size_t{blocks.size()} + 1),
       hidden_(blocks.size()),
-      listed_(blocks.size(), 0) {
-  const VoxelIndex size = map.window().size;
-  voxels_[byte(Label::Unmarked)] = std::int64_t{size[0]} * size[1] * size[2];
-}
+      listed_(blocks.size(), 0),
+      totals_(map.window()) {}
 
 void MapCensus::note_changes(const MapBlocks& blocks, std::span<const std::uint32_t> slots) {
   std::array<std::uint32_t, 256> portion;
@@ -103,11 +101,11 @@ std::span<const std::uint32_t> MapCensus::update(VoxelMap& map, const MapBlocks&
     empty_[block] = empty;
     list_neighbours(blocks, block, sides_touched(differs));
   }
-  for (const LookedAt& at : labels_) {
-    add(counts_[at.block], -1);
+  for (LookedAt& at : labels_) {
+    totals_.take_away(counts_[at.block]);
     counts_[at.block] = derive(map, blocks, at, changed_slots);
     hidden_[at.block] = at.labels.hidden;
-    add(counts_[at.block], 1);
+    totals_.add(counts_[at.block]);
     listed_[at.block] = 0;
   }
   looked_.swap(to_look_);
@@ -115,9 +113,9 @@ std::span<const std::uint32_t> MapCensus::update(VoxelMap& map, const MapBlocks&
   return looked_;
 }
 
-MapCensus::Counts MapCensus::derive(VoxelMap& map, const MapBlocks& blocks, const LookedAt& at,
-                                    std::vector<std::uint32_t>& changed_slots) const {
-  const BlockLabels& labels = at.labels;
+BlockCounts MapCensus::derive(VoxelMap& map, const MapBlocks& blocks, LookedAt& at,
+                              std::vector<std::uint32_t>& changed_slots) const {
+  BlockLabels& labels = at.labels;
   std::array<const BlockBits*, 6> beyond;  // the last of empty_ stands for what is not there
   const auto neighbours = blocks.neighbours(at.block);
   for (std::size_t side = 0; side < 6; ++side) beyond[side] = &empty_[neighbours[side]];
@@ -145,30 +143,12 @@ MapCensus::Counts MapCensus::derive(VoxelMap& map, const MapBlocks& blocks, cons
     }
   }
 
-  Counts counts;
-  const auto set = [&](Label label, int voxels) {
-    counts.voxels[byte(label)] = static_cast<std::uint16_t>(voxels);
-  };
-  set(Label::OcclusionPlane, count(planes));
-  set(Label::Occluded, count(labels.hidden) - counts.voxels[byte(Label::OcclusionPlane)]);
-  set(Label::Empty, count(labels.empty));
-  set(Label::Occupied, count(labels.occupied));
-  counts.occupied_faces = static_cast<std::uint16_t>(open.occupied_faces);
-  counts.occlusion_plane_faces = static_cast<std::uint16_t>(open.hidden_faces);
-  return counts;
-}
-
-void MapCensus::add(const Counts& counts, int sign) {
-  for (std::size_t label = 1; label < kLabelCount; ++label) {
-    voxels_[label] += sign * counts.voxels[label];
-    voxels_[byte(Label::Unmarked)] -= sign * counts.voxels[label];
-  }
-  occupied_faces_ += sign * counts.occupied_faces;
-  occlusion_plane_faces_ += sign * counts.occlusion_plane_faces;
+  labels.occlusion_plane = planes;
+  return counts_of(labels, open);
 }
 
 std::size_t MapCensus::memory_bytes() const {
-  return counts_.capacity() * sizeof(Counts) +
+  return counts_.capacity() * sizeof(BlockCounts) +
          (empty_.capacity() + hidden_.capacity()) * sizeof(BlockBits) + listed_.capacity() +
          (to_look_.capacity() + looked_.capacity()) * sizeof(std::uint32_t) +
          labels_.capacity() * sizeof(LookedAt);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mapper/block_bits.h"
+#include "mapper/block_counts.h"
 #include "mapper/map_blocks.h"
 #include "mapper/voxel_map.h"
 
@@ -36,21 +37,11 @@ class MapCensus {
   std::span<const std::uint32_t> update(VoxelMap& map, const MapBlocks& blocks,
                                         std::vector<std::uint32_t>& changed_slots);
 
-  std::int64_t voxels(Label label) const { return voxels_[static_cast<std::size_t>(label)]; }
-  /// Faces of Occupied voxels that touch an Empty voxel of the window.
-  std::int64_t occupied_faces() const { return occupied_faces_; }
-  /// Faces of OcclusionPlane voxels that touch an Empty voxel of the window.
-  std::int64_t occlusion_plane_faces() const { return occlusion_plane_faces_; }
+  const MapCounts& totals() const { return totals_; }
 
   std::size_t memory_bytes() const;
 
  private:
-  struct Counts {
-    std::array<std::uint16_t, kLabelCount> voxels = {};  ///< Unmarked ones are not counted
-    std::uint16_t occupied_faces = 0;
-    std::uint16_t occlusion_plane_faces = 0;
-  };
-
   struct LookedAt {
     std::uint32_t block;
     BlockLabels labels;
@@ -63,20 +54,17 @@ class MapCensus {
   }
   void take_labels(const VoxelMap& map, const MapBlocks& blocks, std::uint32_t block);
   void list_neighbours(const MapBlocks& blocks, std::uint32_t block, unsigned sides);
-  Counts derive(VoxelMap& map, const MapBlocks& blocks, const LookedAt& at,
-                std::vector<std::uint32_t>& changed_slots) const;
-  void add(const Counts& counts, int sign);
+  BlockCounts derive(VoxelMap& map, const MapBlocks& blocks, LookedAt& at,
+                     std::vector<std::uint32_t>& changed_slots) const;
 
-  std::vector<Counts> counts_;        ///< by block
+  std::vector<BlockCounts> counts_;   ///< by block
   std::vector<BlockBits> empty_;      ///< by block
   std::vector<BlockBits> hidden_;     ///< by block; a label of these changes here alone
   std::vector<std::uint8_t> listed_;  ///< by block: whether in to_look_
   std::vector<std::uint32_t> to_look_;
   std::vector<std::uint32_t> looked_;
   std::vector<LookedAt> labels_;  ///< of the blocks in to_look_
-  std::array<std::int64_t, kLabelCount> voxels_ = {};
-  std::int64_t occupied_faces_ = 0;
-  std::int64_t occlusion_plane_faces_ = 0;
+  MapCounts totals_;
 };
 
 }  // namespace nextview

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
 
+#include "mapper/block_hash.h"
 #include "mapper/map_blocks.h"
 #include "mapper/voxel_map.h"
 
@@ -34,9 +34,7 @@ class MapDigest {
   std::size_t memory_bytes() const;
 
  private:
-  using Hash = std::array<unsigned char, 16>;
-
-  std::vector<Hash> hashes_;           ///< by block; meaningless where absent
+  std::vector<BlockHash> hashes_;      ///< by block; meaningless where absent
   std::vector<std::uint8_t> present_;  ///< by block: not all Unmarked
   std::vector<std::uint8_t> stale_;    ///< by block: is in to_hash_
   std::vector<std::uint32_t> to_hash_;

@@ -1,6 +1,7 @@
 #include "mapper/mapper_process.h"
 
 #include <algorithm>
+#include <iostream>
 #include <iterator>
 #include <utility>
 
@@ -18,13 +19,21 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
+std::variant<MapBuilder, PagedMapBuilder> make_builder(const run_config_t& config,
+                                                       const std::optional<VoxelIndex>& window) {
+  const MapWindow whole = window_of(config);
+  if (window && (window->array() < whole.size.array()).any()) {
+    return PagedMapBuilder(grid_of(config), whole, *window);
+  }
+  return MapBuilder(grid_of(config), whole);
+}
+
 }  // namespace
 
-MapperProcess::MapperProcess(Bus& bus, const run_config_t& config)
-    : bus_(bus),
-      config_(config),
-      builder_(grid_of(config), window_of(config)),
-      history_(builder_.map()) {
+MapperProcess::MapperProcess(Bus& bus, const run_config_t& config,
+                             const std::optional<VoxelIndex>& window)
+    : bus_(bus), config_(config), builder_(make_builder(config, window)) {
+  if (const auto* builder = std::get_if<MapBuilder>(&builder_)) history_.emplace(builder->map());
   bus_.on<range_image_t>([this](const range_image_t& part) { receive(part); });
 }
 
@@ -43,19 +52,26 @@ bool MapperProcess::step() {
   return true;
 }
 
+FoldCounts MapperProcess::fold_into_map(const RangeImage& image) {
+  if (auto* paged = std::get_if<PagedMapBuilder>(&builder_)) return paged->fold(image);
+  const FoldReport& report = std::get<MapBuilder>(builder_).fold(image);
+  history_->view_folded(next_view_, report);
+  return report;
+}
+
 void MapperProcess::fold(const ReceivedRangeImage& received) {
   const auto start = Clock::now();
-  const FoldReport& report = builder_.fold(received.image);
+  const FoldCounts folded = fold_into_map(received.image);
   const double update_wall_s = seconds_since(start);
-  commit_t commit = commit_message(received, report, builder_.statistics());
+  const auto statistics = [](const auto& builder) { return builder.statistics(); };
+  commit_t commit = commit_message(received, folded, std::visit(statistics, builder_));
   const auto digest_start = Clock::now();
-  commit.map_digest = builder_.digest();
+  commit.map_digest = std::visit([](auto& builder) { return builder.digest(); }, builder_);
   const double digest_wall_s = seconds_since(digest_start);
   commit.history_digest = history_digest_ = history_digest(history_digest_, received);
   bus_.publish(commit);
   bus_.publish(timing_message(bus_.role(), received.utime, received.view, received.attempt,
                               {{"update", update_wall_s}, {"digest", digest_wall_s}}));
-  history_.view_folded(next_view_, report);
   utime_ = received.utime;
   ++next_view_;
 }
@@ -67,8 +83,9 @@ bool MapperProcess::publish_blocks() {
     const int view = next_view_ - 1;
     const int since = std::min(*blocks_wanted_.begin(), view);
     blocks_wanted_.erase(blocks_wanted_.begin());
-    std::ranges::move(map_blocks_messages(builder_.map(), history_, view, since, utime_),
-                      std::back_inserter(blocks_));
+    std::ranges::move(
+        map_blocks_messages(std::get<MapBuilder>(builder_).map(), *history_, view, since, utime_),
+        std::back_inserter(blocks_));
   }
   bus_.publish(std::move(blocks_.front()));
   blocks_.pop_front();
@@ -84,7 +101,14 @@ void MapperProcess::on_missing(const request_t& request) {
     bus_.request<range_image_t>(request.view, request.attempt);
   }
   // Whoever asks again before the answer begins gets one.
-  if (request.wanted_channel == Channel<map_blocks_t>::name) blocks_wanted_.insert(request.view);
+  if (request.wanted_channel != Channel<map_blocks_t>::name) return;
+  if (history_) {
+    blocks_wanted_.insert(request.view);
+  } else if (!refusal_said_) {
+    refusal_said_ = true;
+    std::cerr << Channel<map_blocks_t>::name
+              << " is asked for, which a mapper with --window does not send: run it without\n";
+  }
 }
 
 }  // namespace nextview

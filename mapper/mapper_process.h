@@ -3,22 +3,28 @@
 #include <cstdint>
 #include <deque>
 #include <map>
+#include <optional>
 #include <set>
 #include <string>
+#include <variant>
 
 #include "lcmtypes/bus_process.h"
 #include "mapper/block_history.h"
 #include "mapper/map_builder.h"
+#include "mapper/paged_map_builder.h"
 #include "sensor/range_image_message.h"
 
 namespace nextview {
 
 /// The mapper on the bus: folds every view's range image into the map, in view order, and says with
 /// a commit what the map is then. Whoever asks gets the blocks of the map that have changed since a
-/// view, when there is nothing to fold.
+/// view, when there is nothing to fold and the map lies in one buffer.
 class MapperProcess : public BusProcess {
  public:
-  MapperProcess(Bus& bus, const run_config_t& config);
+  /// @param window voxels that are to lie open in memory (PagedMapBuilder); without it, or where it
+  ///        is no smaller than the map, all of the map lies in one buffer
+  MapperProcess(Bus& bus, const run_config_t& config,
+                const std::optional<VoxelIndex>& window = std::nullopt);
 
   /// Folds the range image of the next view; else publishes the next part of the map that somebody
   /// has asked for.
@@ -31,17 +37,19 @@ class MapperProcess : public BusProcess {
 
  private:
   void receive(const range_image_t& part);
+  FoldCounts fold_into_map(const RangeImage& image);
   void fold(const ReceivedRangeImage& received);
   bool publish_blocks();
 
   Bus& bus_;
   run_config_t config_;
-  MapBuilder builder_;
+  std::variant<MapBuilder, PagedMapBuilder> builder_;
   RangeImageAssembler assembler_;
   std::map<int, ReceivedRangeImage> waiting_;  // by view; the first attempt that came whole counts
   int next_view_ = 1;
-  std::string history_digest_;  // of the last commit
-  BlockHistory history_;
+  std::string history_digest_;           // of the last commit
+  std::optional<BlockHistory> history_;  // of a map in one buffer
+  bool refusal_said_ = false;
   std::int64_t utime_ = 0;           // of the last view
   std::set<int> blocks_wanted_;      // since these views
   std::deque<map_blocks_t> blocks_;  // of one answer, still to be published

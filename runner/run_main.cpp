@@ -96,6 +96,7 @@ int run(const nextview::RunOptions& options, nextview::RunSupervisor::Clock::tim
     nextview::EarlierRun earlier(files.log);
     if (is_over(earlier, files)) return 0;
     nextview::RunSetup setup = nextview::set_up_again(earlier.config());
+    nextview::fill_window(setup, options);
     nextview::RunOptions resumed = options;
     if (!earlier.config().has_scene) resumed.without = {"sensor_sim", "base_sim"};
     return carry_out(resumed, std::move(setup), std::move(folder), std::move(earlier), start);

@@ -264,6 +264,14 @@ void add_map_options(CLI::App& app, RunOptions& options) {
       ->check(number_within(bounds::kMarginVoxels))
       ->capture_default_str()
       ->group(group);
+  app.add_option(
+         "--window", options.window_m,
+         "X Y Z, m: how much of the map the mapper has open in memory about the sensor; the "
+         "rest of what was seen is kept aside, packed. Default: all of it. The result does "
+         "not depend on it")
+      ->expected(3)
+      ->check(number_within(bounds::kWindow))
+      ->group(group);
 }
 
 std::vector<std::string> stop_rule_names() {
@@ -397,7 +405,7 @@ void check_resume(const CLI::App& app, RunOptions& options) {
   if (options.resume.empty()) return;
   const std::set<std::string> free = {"--resume",    "--without", "--planner",     "--lcm-url",
                                       "--patience",  "--cache",   "--no-coverage", "--verbose",
-                                      "--real-time", "--view",    "--paused"};
+                                      "--real-time", "--view",    "--paused",      "--window"};
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() == 0 || free.contains(option->get_name())) continue;
     throw CLI::ValidationError(

@@ -52,6 +52,7 @@ struct RunOptions {
 
   double voxel_size_m = 0.10;
   int margin_voxels = 1;
+  std::vector<double> window_m;  ///< three sides, or empty: all of the map lies in one buffer
 
   double clearance_m = FeasibilityParameters{}.clearance_m;
   std::string strategy = std::string(SurfaceStrategy::kFacts.name);

@@ -1,6 +1,5 @@
 #include "runner/run_processes.h"
 
-#include <fmt/format.h>
 #include <signal.h>
 #include <sys/resource.h>
 
@@ -25,12 +24,12 @@ std::vector<std::string> answering_roles(const std::vector<std::string>& without
 
 RunProcesses::RunProcesses(std::string lcm_url, std::int64_t run, const std::filesystem::path& log,
                            const std::vector<std::string>& answering, int reached, int folder_lock,
-                           double real_time)
+                           RoleOptions options)
     : lcm_url_(std::move(lcm_url)),
       run_(run),
       log_(log),
       folder_lock_(folder_lock),
-      real_time_(real_time),
+      options_(std::move(options)),
       nice_value_(::getpriority(PRIO_PROCESS, 0)) {
   start_recorder(children_.end());
   for (const std::string& role : answering) start(role, reached, children_.end());
@@ -67,8 +66,8 @@ void RunProcesses::start(const std::string& role, int reached, Children::const_i
   std::vector<std::string> arguments = {program_of(role).string(), "--lcm-url=" + lcm_url_,
                                         "--run=" + std::to_string(run_)};
   if (reached > 0 && !own) arguments.push_back("--catch-up=" + std::to_string(reached));
-  if (real_time_ > 0.0 && role.ends_with("_sim")) {
-    arguments.push_back(fmt::format("--real-time={}", real_time_));
+  if (const auto options = options_.find(role); options != options_.end()) {
+    arguments.insert(arguments.end(), options->second.begin(), options->second.end());
   }
   try {
     children_.emplace(before, role, arguments, ChildTerms{.nice_value = nice_value_});

@@ -22,6 +22,9 @@ struct Casualty {
   std::string account;  ///< its role, how it ended, and its last words
 };
 
+/// Options of processes, of no influence on results, by role.
+using RoleOptions = std::map<std::string, std::vector<std::string>>;
+
 /// The processes of a run and its recorder.
 class RunProcesses {
  public:
@@ -33,11 +36,11 @@ class RunProcesses {
   /// @param answering their roles
   /// @param reached the view the run has got to already, up to which they catch up; 0: it begins
   /// @param folder_lock a file descriptor that the recorder holds open until its end
-  /// @param real_time simulated seconds a second of the simulators; 0: as fast as it goes
+  /// @param options that processes are started with, by role
   /// @throws SetupError saying what cannot be started and what to do
   RunProcesses(std::string lcm_url, std::int64_t run, const std::filesystem::path& log,
                const std::vector<std::string>& answering, int reached, int folder_lock,
-               double real_time = 0.0);
+               RoleOptions options = {});
 
   /// Starts the planner, and with it the run: when the others are ready, so that its first goal
   /// need not be asked for again.
@@ -79,7 +82,7 @@ class RunProcesses {
   std::filesystem::path log_;
   std::filesystem::path own_planner_;
   int folder_lock_;
-  double real_time_;
+  RoleOptions options_;
   int nice_value_;     ///< of this process before it gives way to them
   Children children_;  // the recorder first, the planner last
   std::map<std::string, std::int64_t> memory_of_ended_;  ///< of those others stand in for

@@ -352,12 +352,31 @@ RunSetup prepare_without_scene(const RunOptions& options) {
 
 }  // namespace
 
+void fill_window(RunSetup& setup, const RunOptions& options) {
+  if (options.window_m.empty()) return;
+  const VoxelIndex whole = window_of(setup.config).size;
+  VoxelIndex window;
+  setup.mapper_options = {"--window"};
+  for (int axis = 0; axis < 3; ++axis) {
+    // 6.4 / 0.1 is a little above 64.
+    const double voxels =
+        options.window_m[static_cast<std::size_t>(axis)] / setup.config.map.voxel_size_m - 1e-6;
+    window[axis] = std::clamp(static_cast<int>(std::ceil(voxels)), 1, whole[axis]);
+    setup.mapper_options.push_back(std::to_string(window[axis]));
+  }
+  setup.notes.push_back(fmt::format(
+      "the mapper has {} x {} x {} of the map's {} x {} x {} voxels open, the planner all of them",
+      window[0], window[1], window[2], whole[0], whole[1], whole[2]));
+}
+
 RunSetup prepare_run(const RunOptions& options) {
   const auto without = [&options](const char* role) {
     return std::find(options.without.begin(), options.without.end(), role) != options.without.end();
   };
-  return without("sensor_sim") && without("base_sim") ? prepare_without_scene(options)
-                                                      : prepare_in_scene(options);
+  RunSetup setup = without("sensor_sim") && without("base_sim") ? prepare_without_scene(options)
+                                                                : prepare_in_scene(options);
+  fill_window(setup, options);
+  return setup;
 }
 
 ViewBoundQuestion bound_question_of(const RunOptions& options, const run_config_t& config) {

@@ -49,6 +49,16 @@ bool all_of(const std::set<std::string>& roles, const std::set<std::string>& hea
 /// Waits from first on up to two seconds.
 AskTimer reminder_after(milliseconds first) { return AskTimer(first, milliseconds(2000)); }
 
+RoleOptions role_options(const RunOptions& options, const RunSetup& setup) {
+  RoleOptions by_role;
+  by_role["mapper"] = setup.mapper_options;
+  if (options.real_time > 0.0) {
+    const std::string real_time = fmt::format("--real-time={}", options.real_time);
+    by_role["base_sim"] = by_role["sensor_sim"] = {real_time};
+  }
+  return by_role;
+}
+
 void count_refusals(const RunRecord& record, FinishedRun& run) {
   for (const auto& [key, arrival] : record.arrivals()) {
     if (arrival.arrived) continue;
@@ -149,7 +159,7 @@ void RunSupervisor::take_up_again() {
 void RunSupervisor::start_up() {
   join_bus();
   processes_.emplace(lcm_url_, setup_.config.run, files_.log, answering_, reached_, folder_.lock(),
-                     options_.real_time);
+                     role_options(options_, setup_));
   if (options_.verbose || !options_.without.empty()) {
     progress_.say(fmt::format("bus: {}, run {}", lcm_url_, setup_.config.run));
   }

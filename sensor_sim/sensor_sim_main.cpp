@@ -10,5 +10,5 @@ int main(int argc, char** argv) {
         return std::make_unique<nextview::SensorSimProcess>(bus, config, nextview::end_requested,
                                                             real_time);
       },
-      &real_time);
+      [&real_time](CLI::App& app) { nextview::add_real_time_option(app, real_time); });
 }

@@ -7,153 +7,11 @@
 #include "mapper/map_builder.h"
 #include "mapper/map_digest.h"
 #include "mapper/reference_map_update.h"
-#include "tests/mapper/analytic_world.h"
+#include "tests/mapper/same_map.h"
+#include "tests/mapper/small_world.h"
 
 namespace nextview {
 namespace {
-
-AnalyticWorld random_world(RandomStream& random, const Eigen::Vector3d& min,
-                           const Eigen::Vector3d& max) {
-  const auto point = [&] {
-    return Eigen::Vector3d(uniform(random, min[0], max[0]), uniform(random, min[1], max[1]),
-                           uniform(random, min[2], max[2]));
-  };
-  AnalyticWorld world;
-  const double margin = 0.1 * (max - min).norm();
-  if (random.below(4) != 0) {  // a room a little smaller or larger than the window
-    const auto shift = [&] { return Eigen::Vector3d::Constant(uniform(random, -margin, margin)); };
-    world.boxes.push_back({min + shift(), max + shift()});
-  }
-  for (std::uint32_t n = random.below(3); n > 0; --n) {
-    const Eigen::Vector3d corner = point();
-    world.boxes.push_back({corner, corner + Eigen::Vector3d::Constant(uniform(random, 0.1, 1.0))});
-  }
-  for (std::uint32_t n = random.below(3); n > 0; --n) {
-    world.spheres.push_back({point(), uniform(random, 0.1, 0.5) * margin});
-  }
-  if (random.below(2) == 0) {
-    const Eigen::Vector3d normal = (point() - point()).normalized();
-    world.planes.push_back({normal, normal.dot(point())});
-  }
-  return world;
-}
-
-struct Case {
-  VoxelGrid grid;
-  MapWindow window;
-  AnalyticWorld world;
-
-  Eigen::Vector3d corner_m(int which) const {
-    return grid.center_m(window.min + which * (window.size - VoxelIndex::Ones()));
-  }
-};
-
-Case random_case(RandomStream& random) {
-  Case c;
-  c.grid.voxel_size_m = random.below(2) == 0 ? 0.1 : uniform(random, 0.02, 0.3);
-  for (int axis = 0; axis < 3; ++axis) {
-    if (random.below(2) == 0) c.grid.origin_m[axis] = uniform(random, -5.0, 5.0);
-    c.window.min[axis] = uniform_int(random, -40, 40);
-    const int sizes[] = {1, 7, 8, 9, 16, 17, 20, 24};
-    c.window.size[axis] = sizes[random.below(8)];
-  }
-  c.world = random_world(random, c.corner_m(0), c.corner_m(1));
-  return c;
-}
-
-SensorGeometry random_sensor(RandomStream& random) {
-  const int columns = uniform_int(random, 2, 24);
-  const int rows = uniform_int(random, 2, 16);
-  switch (random.below(4)) {
-    case 0: {
-      const double turn = 2.0 * std::numbers::pi;
-      return SphericalScanner{columns, rows,
-                              random.below(2) == 0 ? turn : uniform(random, 0.1, turn),
-                              uniform(random, 0.02, 3.0)};
-    }
-    case 1:
-      return LineStriper{columns, rows, uniform(random, 0.02, 3.0), uniform(random, 0.02, 3.0),
-                         0.0};
-    default:
-      return TiltedLineScan::with_aperture(columns, rows, uniform(random, 0.02, 1.5));
-  }
-}
-
-RangeImage random_view(const Case& c, RandomStream& random) {
-  const SensorGeometry sensor = random_sensor(random);
-  SensorPose pose;
-  for (int axis = 0; axis < 3; ++axis) {
-    pose.position_m[axis] = uniform(random, c.corner_m(0)[axis], c.corner_m(1)[axis]);
-  }
-  pose.pan_rad = uniform(random, -std::numbers::pi, std::numbers::pi);
-  pose.tilt_rad = uniform(random, -0.5, 0.5) * std::numbers::pi;
-  if (random.below(4) == 0) {  // rays along axes and through the corners of voxels
-    pose.position_m = c.grid.center_m(c.grid.voxel_of(pose.position_m));
-    pose.pan_rad = 0.5 * std::numbers::pi * uniform_int(random, -2, 2);
-    pose.tilt_rad = 0.5 * std::numbers::pi * uniform_int(random, -1, 1);
-  }
-  RangeLimits limits;
-  limits.min_m = random.below(2) == 0 ? 0.0 : 0.3;
-  limits.max_m = random.below(3) == 0 ? 1e7 : uniform(random, 0.5, 6.0);
-  const double noise_m = random.below(2) == 0 ? 0.0 : 0.02;
-  RangeImage image = scan_world(c.world, make_ray_table(sensor), limits, pose, noise_m, &random);
-  for (float& range_m : image.range_m) {
-    switch (random.below(40)) {
-      case 0:
-        range_m = std::numeric_limits<float>::quiet_NaN();
-        break;
-      case 1:
-        range_m = std::numeric_limits<float>::infinity();
-        break;
-      case 2:
-        range_m = static_cast<float>(uniform(random, 0.0, 5.0));
-        break;
-      case 3:
-        range_m = random.below(2) == 0 ? 0.0f : 3e38f;
-        break;
-      default:
-        break;
-    }
-    if (range_m < 0.0f) range_m = 0.0f;
-  }
-  return image;
-}
-
-// Plain comparisons, and a failure for the first voxel that differs only: GoogleTest's own take
-// most of the time over millions of voxels.
-bool same_surface(const SurfaceVoxel* a, const SurfaceVoxel* b) {
-  if (a == nullptr || b == nullptr) return a == b;
-  return a->normal_sum == b->normal_sum && a->normal_count == b->normal_count &&
-         a->quality == b->quality;
-}
-
-void expect_equal_maps(const VoxelMap& map, const ReferenceMapUpdate& reference) {
-  const MapWindow& window = map.window();
-  for (int k = 0; k < window.size[2]; ++k) {
-    for (int j = 0; j < window.size[1]; ++j) {
-      for (int i = 0; i < window.size[0]; ++i) {
-        const VoxelIndex voxel = window.min + VoxelIndex(i, j, k);
-        if (map.label(voxel) != reference.label(voxel)) {
-          FAIL() << "label " << static_cast<int>(map.label(voxel)) << " for "
-                 << static_cast<int>(reference.label(voxel)) << " at " << voxel.transpose();
-        }
-        if (!same_surface(map.surface(voxel), reference.surface(voxel))) {
-          FAIL() << "surface data at " << voxel.transpose();
-        }
-      }
-    }
-  }
-}
-
-void expect_equal_statistics(const MapStatistics& a, const MapStatistics& b) {
-  EXPECT_EQ(a.voxels, b.voxels);
-  EXPECT_EQ(a.occupied_faces, b.occupied_faces);
-  EXPECT_EQ(a.occlusion_plane_faces, b.occlusion_plane_faces);
-  EXPECT_EQ(a.occupied_area_m2, b.occupied_area_m2);
-  EXPECT_EQ(a.occlusion_plane_area_m2, b.occlusion_plane_area_m2);
-  EXPECT_EQ(a.mean_quality, b.mean_quality);
-  EXPECT_EQ(a.min_quality, b.min_quality);
-}
 
 void expect_report(const FoldReport& report, const std::vector<Label>& before, const VoxelMap& map,
                    const RangeImage& image) {
@@ -211,11 +69,11 @@ TEST(MapUpdate, EqualsItsPlainTwinOverRandomWorldsAndViews) {
   for (int n = 0; n < 1000; ++n) {
     SCOPED_TRACE("case " + std::to_string(n));
     RandomStream random(n, 1, 1, RandomPurpose::RangeNoise);
-    const Case c = random_case(random);
+    const SmallWorld c = random_small_world(random);
     MapBuilder builder(c.grid, c.window);
     ReferenceMapUpdate reference(c.grid, c.window);
     for (int view = uniform_int(random, 1, 4); view > 0; --view) {
-      const RangeImage image = random_view(c, random);
+      const RangeImage image = random_view(c, random_sensor(random), random);
       const std::vector<Label> before(builder.map().labels().begin(), builder.map().labels().end());
       const auto surfaces_before = surfaces_of(builder.map());
       const FoldReport& report = builder.fold(image);
@@ -257,11 +115,11 @@ TEST(MapUpdate, EqualsItsPlainTwinWhileTheWindowMoves) {
   for (int n = 0; n < 900; ++n) {
     SCOPED_TRACE("case " + std::to_string(n));
     RandomStream random(n, 1, 2, RandomPurpose::RangeNoise);
-    Case c = random_case(random);
+    SmallWorld c = random_small_world(random);
     MapBuilder builder(c.grid, c.window);
     ReferenceMapUpdate reference(c.grid, c.window);
     for (int step = 0; step < 8; ++step) {
-      const RangeImage image = random_view(c, random);
+      const RangeImage image = random_view(c, random_sensor(random), random);
       builder.fold(image);
       reference.fold(image);
       if (random.below(2) == 0) builder.digest();  // also hashed late, over several moves
@@ -303,7 +161,7 @@ TEST(MapUpdate, EqualsItsPlainTwinWherePointsLieOnTheFacesOfVoxels) {
   for (int n = 0; n < 600; ++n) {
     SCOPED_TRACE("case " + std::to_string(n));
     RandomStream random(n, 1, 1, RandomPurpose::RangeNoise);
-    Case c;
+    SmallWorld c;
     c.grid.voxel_size_m = kSizes_m[random.below(6)];
     const double half_m = 0.5 * c.grid.voxel_size_m;
     c.window = {VoxelIndex::Constant(-10), VoxelIndex::Constant(21)};

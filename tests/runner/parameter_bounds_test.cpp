@@ -389,6 +389,7 @@ std::vector<Row> rows() {
 
   add({"kMarginVoxels", kMarginVoxels, "--margin-voxels", {}, {}, 1.0, {"@"}, true});
   add({"kPatience", kPatience, "--patience", {}, {}});
+  add({"kWindow", kWindow, "--window", {}, {}, 1.0, {"@", "1", "1"}});
   add({"kRealTime", kRealTime, "--real-time", {}, {}, 1.0, {"=@"}});
   add({"kBoundSpacing", kBoundSpacing, "--bound-spacing", {}, [](double v) {
          checked<PoseParameters>([v](auto& p) { p.spacing_m = v; });

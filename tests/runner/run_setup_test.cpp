@@ -36,6 +36,17 @@ TEST(RunSetup, LooksForSurfaceUnlessToldOtherwise) {
   EXPECT_GT(config.planner.least_gain_m2, 0.0);
 }
 
+// In voxels, rounded up, and no more than the map has.
+TEST(RunSetup, TellsTheMapperOfItsWindow) {
+  RunOptions options = boxes();
+  EXPECT_TRUE(prepare_run(options).mapper_options.empty());
+  options.window_m = {1.6, 1.61, 100.0};
+  const RunSetup setup = prepare_run(options);
+  EXPECT_EQ(setup.mapper_options, (std::vector<std::string>{"--window", "16", "17", "33"}));
+  options.voxel_size_m = 0.05;
+  EXPECT_EQ(prepare_run(options).mapper_options[1], "32");
+}
+
 TEST(RunSetup, OfThePapersRoomIsThePapers) {
   const RunSetup setup = prepare_run(boxes());
   const run_config_t& config = setup.config;

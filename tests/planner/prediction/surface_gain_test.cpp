@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -15,6 +14,7 @@
 #include "mapper/integer_line.h"
 #include "planner/prediction/grown_surface.h"
 #include "sensor/sensor_pose.h"
+#include "tests/planner/prediction/plain_gain.h"
 
 namespace nextview {
 namespace {
@@ -43,66 +43,6 @@ void set_surface(VoxelMap& map, const VoxelIndex& voxel, const Vector3d& normal,
   surface.normal_count = 1;
   surface.quality = static_cast<std::uint16_t>(quality * SurfaceVoxel::kQualityUnit);
 }
-
-// A view judged by the definition, one ray and one voxel after the other.
-class PlainGain {
- public:
-  PlainGain(const VoxelMap& map, const FreeSpaceField& field, std::span<const std::uint8_t> in_vain,
-            const GrownSurface& grown, const VoxelIndex& sensor, double unknown_weight)
-      : map_(map), field_(field), in_vain_(in_vain), grown_(grown), weight_(unknown_weight) {
-    for (int cell = 0; cell < Panorama::kCells; ++cell) {
-      unknown_.push_back(first(
-          cell, sensor, [&](const VoxelIndex& at) { return map_.label(at) != Label::Empty; }));
-      surface_.push_back(first(cell, sensor, [&](const VoxelIndex& at) {
-        return map_.label(at) == Label::Occupied || grown_.likelihood(field_.offset(at)) > 0;
-      }));
-      ++cells_of_[unknown_.back()];
-      ++grown_cells_of_[surface_.back()];
-    }
-  }
-
-  ExpectedView view(const std::vector<int>& cells) const {
-    ExpectedView view;
-    for (const int cell : cells) {
-      const std::size_t seen = unknown_[static_cast<std::size_t>(cell)];
-      const std::size_t grown = surface_[static_cast<std::size_t>(cell)];
-      if (seen != kNone && map_.label(field_.index_of(seen)) == Label::Occupied) {
-        view.overlap += 1.0 / static_cast<double>(cells.size());
-      } else if (seen != kNone) {
-        view.new_voxels += weight_ * std::pow(0.5, in_vain_[seen]) / cells_of_.at(seen);
-      }
-      if (grown != kNone) {
-        const double likely =
-            static_cast<double>(grown_.likelihood(grown)) / GrownSurface::kCertain;
-        view.new_voxels += likely * std::pow(0.5, in_vain_[grown]) / grown_cells_of_.at(grown);
-      }
-    }
-    return view;
-  }
-
- private:
-  static constexpr std::size_t kNone = ~std::size_t{0};
-
-  template <class Stops>
-  std::size_t first(int cell, const VoxelIndex& sensor, Stops stops) const {
-    const IntegerLine line =
-        line_along(sensor, Panorama::direction(cell), prediction_reach(raster(), kVoxel_m));
-    for (int k = 1; k <= std::min(line.steps, steps_inside(line, map_.window())); ++k) {
-      if (stops(line.at(k))) return field_.offset(line.at(k));
-    }
-    return kNone;
-  }
-
-  const VoxelMap& map_;
-  const FreeSpaceField& field_;
-  std::span<const std::uint8_t> in_vain_;
-  const GrownSurface& grown_;
-  double weight_;
-  std::vector<std::size_t> unknown_;  // by cell: the offset met
-  std::vector<std::size_t> surface_;
-  std::map<std::size_t, int> cells_of_;
-  std::map<std::size_t, int> grown_cells_of_;
-};
 
 // A sensor sees a cell when one of its rays is as near as its neighbours are to each other.
 TEST(PanoramaViews, AreTheCellsThatHaveARayOfTheSensorNearby) {
@@ -181,7 +121,8 @@ TEST(SurfaceGain, IsThatOfTheDefinition) {
     for (std::uint8_t& vain : in_vain) vain = static_cast<std::uint8_t>(random() % 3);
     const SurfaceGain::Known known{field, in_vain, &grown};
     gain.look_from(known, sensor);
-    const PlainGain plain(map, field, in_vain, grown, sensor, 0.3);
+    const PlainGain plain(map, field, in_vain, grown, sensor, prediction_reach(raster(), kVoxel_m),
+                          0.3);
     double best = 0.0;
     for (std::size_t i = 0; i < orientations.size(); ++i) {
       const ExpectedView expected = plain.view(cells[i]);
