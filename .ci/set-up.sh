@@ -45,6 +45,7 @@ install_missing() {
     as_root=(sudo)
   fi
   echo "Installing ${missing[*]}"
+  rm -f "$build/configured-with" # cmake may find more from now on
   when_free "${as_root[@]}" env LC_ALL=C apt-get -qq update &&
     when_free "${as_root[@]}" env LC_ALL=C DEBIAN_FRONTEND=noninteractive \
       apt-get -qq install --no-install-recommends "${missing[@]}" || {
@@ -71,7 +72,8 @@ trap 'rm -f "$install_log"' EXIT
 
 # configure [OPTION...]: unless it has been done with these options.
 configure() {
-  local options=("$@")
+  # A user's compiler may warn of more than ours did.
+  local options=("-DCMAKE_COMPILE_WARNING_AS_ERROR=${NEXTVIEW_WARNINGS_ARE_ERRORS:-OFF}" "$@")
   if command -v ccache > /dev/null; then
     options+=(-DCMAKE_C_COMPILER_LAUNCHER=ccache -DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
   fi

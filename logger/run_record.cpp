@@ -80,6 +80,7 @@ void RunRecord::add(const range_image_t& part) {
 void RunRecord::add(const timing_t& timing) {
   // Those of the last view come with the one after it.
   check_fits(timing.view - 1, timing.attempt);
+  roles_.insert(timing.role);
   const std::vector<std::string_view> names = names_of(timing.duration_names);
   for (std::size_t i = 0; i < names.size(); ++i) {
     durations_s_.emplace(std::tuple(timing.view, timing.attempt, std::string(names[i])),

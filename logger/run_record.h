@@ -63,7 +63,7 @@ class RunRecord {
   std::optional<double> duration_s(int view, int attempt, const std::string& name) const;
   const std::map<MessageKey, arrival_t>& arrivals() const { return arrivals_; }
   const std::map<int, commit_t>& commits() const { return commits_; }
-  /// Who has said how it is (status_t), by role.
+  /// Who has said how it is (status_t) or how long it took (timing_t), by role.
   const std::set<std::string>& roles() const { return roles_; }
   /// Frees a range image that is needed no more; it still counts as there.
   void forget_range_image(int view, int attempt);

@@ -12,8 +12,8 @@ namespace nextview {
 /// Where the robot of a run may be.
 FeasibilityParameters feasibility_of(const run_config_t& config);
 
-/// What the factors count in a run's fitness; nothing unless its strategy is the paper's, which
-/// alone goes by it.
+/// What the factors count in a run's fitness; nothing unless its strategy goes by it
+/// (StrategyFacts::weighs_factors).
 FactorWeights factor_weights_of(const run_config_t& config);
 
 /// The planner of a run, with the run's strategy.

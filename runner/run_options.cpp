@@ -371,13 +371,15 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
       ->check(CLI::IsMember(stop_rule_names()))
       ->group(group);
   app.add_option("--structure-weight", options.structure_weight,
-                 "paper: what a view counts more for seeing surfaces that tell where it was taken "
+                 "Of the paper's fitness: what a view counts more for seeing surfaces that tell "
+                 "where it was taken "
                  "from (f_structure); the paper's product has 1, 0: off")
       ->check(number_within(bounds::kFactorWeight))
       ->capture_default_str()
       ->group(group);
   app.add_option("--navigation-weight", options.navigation_weight,
-                 "paper: what a view counts more for being near by real paths (f_navigation); "
+                 "Of the paper's fitness: what a view counts more for being near by real paths "
+                 "(f_navigation); "
                  "likewise")
       ->check(number_within(bounds::kFactorWeight))
       ->capture_default_str()
@@ -437,8 +439,9 @@ std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_sta
   CLI::App app{description};
   app.footer(
       "Examples:\n"
-      "  ./run                                  the paper's first room, 60 views\n"
-      "  ./run columns --seed 3 --quality       the second one, for quality, 300 views\n"
+      "  ./run                                  the paper's first room, until nothing is left\n"
+      "  ./run columns --seed 3 --quality       the second one, for quality\n"
+      "  ./run --strategy paper                 the paper's method, 60 views\n"
       "  ./run flat.dae --start 1.0 2.5 1.2     a CAD model of yours\n"
       "  ./run --view                           watched in a browser\n"
       "  ./run --without sensor_sim,base_sim --start 1 2 1.2 --workspace 0 0 0 8 6 3\n"

@@ -14,7 +14,9 @@ ChildProcess start(const std::string& lcm_url, std::int64_t run, bool paused) {
                                       "--run", std::to_string(run)};
   if (paused) command.emplace_back("--paused");
   try {
-    return {ViewerProcess::kRole, command, ChildTerms{.at_death = AtParentsDeath::Terminate}};
+    ChildTerms terms;
+    terms.at_death = AtParentsDeath::Terminate;
+    return {ViewerProcess::kRole, command, terms};
   } catch (const std::system_error& error) {
     throw SetupError(std::string("--view: ") + error.what() +
                      ": nextview_viewer needs libboost-dev where nextview is built; ./run --view "

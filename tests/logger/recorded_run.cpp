@@ -97,7 +97,8 @@ Recording record_run() {
 }
 
 Recording with_driver_for(const std::string& role, const Recording& recording) {
-  return without<status_t>(recording, [&](const status_t& status) { return status.role == role; });
+  const auto of_role = [&](const auto& message) { return message.role == role; };
+  return without<timing_t>(without<status_t>(recording, of_role), of_role);
 }
 
 RunLog log_of(const Recording& recording) {

@@ -129,6 +129,11 @@ TEST(Replay, FindsPosesMovedByAMetre) {
   expect_status(
       changed<range_image_t>(recorded(), [](range_image_t& part) { part.position_m[0] += 0.1; }), 1,
       "NEXTVIEW_RANGE_IMAGE of view 2, attempt 1: its pose is not the one the robot arrived at");
+  // Who has scanned and moved is known without statuses, too.
+  const auto any = [](const status_t&) { return true; };
+  expect_status(changed<arrival_t>(without<status_t>(recorded(), any),
+                                   [](arrival_t& a) { a.true_position_m[0] += 1.0; }),
+                1, "NEXTVIEW_ARRIVAL of view 2, attempt 1 differs in true_position_m");
   // All of them at once agree with each other, but not with the maps.
   Recording all = changed<arrival_t>(recorded(), [](arrival_t& arrival) {
     arrival.true_position_m[1] += 0.1;

@@ -4,7 +4,10 @@
 # 77: there is no apt.
 set -euo pipefail
 repository=$1
-command -v apt-get > /dev/null && command -v perl > /dev/null || exit 77
+command -v apt-get > /dev/null && command -v perl > /dev/null || {
+  echo "skipped: there is no apt-get, or no perl to hold its locks"
+  exit 77
+}
 folder=$(mktemp -d)
 mkdir -p "$folder"/{.ci,bin,dpkg,etc,state/lists/partial,cache/archives/partial}
 touch "$folder/dpkg/status" "$folder/etc/sources.list"
