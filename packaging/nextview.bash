@@ -10,7 +10,7 @@ _nextview() {
     command+=("${COMP_WORDS[1]}")
   fi
   if [[ $word == -* ]]; then
-    choices=$("${command[@]}" --help 2> /dev/null | grep -oE -- '(^|[ ,])--[a-z0-9-]+')
+    choices=$("${command[@]}" --help 2> /dev/null | grep -oE -- '(^|[ ,])--[a-z0-9-]+' | sort -u)
     mapfile -t COMPREPLY < <(compgen -W "$choices" -- "$word")
     return
   fi

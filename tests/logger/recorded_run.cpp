@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <lcm/lcm-cpp.hpp>
 
+#include "lcmtypes/timing_message.h"
 #include "mapper/mapper_process.h"
 #include "planner/planner_process.h"
 #include "sensor_sim/sensor_sim_process.h"
@@ -49,6 +50,8 @@ class RefusingBase {
     arrival.true_tilt_rad = arrival.believed_tilt_rad = goal_.tilt_rad;
     arrival.path_length_m = arrived ? goal.path_length_m : 0.0;
     bus_.publish(arrival);
+    bus_.publish(
+        timing_message(bus_.role(), arrival.utime, goal.view, goal.attempt, {{"move", 0.001}}));
   }
 
   Bus& bus_;
