@@ -2,18 +2,34 @@
 
 #include <utility>
 #include <variant>
+#include <vector>
 
+#include "planner/prediction/panorama_view_predictor.h"
 #include "planner/prediction/selective_view_predictor.h"
 #include "planner/strategy_inputs.h"
 
 namespace nextview {
 
+namespace {
+
+std::unique_ptr<ViewPredictor> predictor_for(const StrategyInputs& inputs,
+                                             const std::vector<Orientation>& orientations,
+                                             bool counts_surfaces) {
+  if (inputs.subdivisions == 0) {
+    return std::make_unique<SelectiveViewPredictor>(inputs.raster, inputs.voxel_size_m,
+                                                    orientations, counts_surfaces, inputs.threads);
+  }
+  return std::make_unique<PanoramaViewPredictor>(inputs.raster, inputs.voxel_size_m, orientations,
+                                                 counts_surfaces, inputs.threads);
+}
+
+}  // namespace
+
 std::unique_ptr<Strategy> PaperRefinedStrategy::make(const StrategyInputs& inputs) {
   PlannerParameters search = inputs.search;
   const FaceRefinement& refinement = search.refinement.emplace(inputs.subdivisions);
-  auto predictor = std::make_unique<SelectiveViewPredictor>(
-      inputs.raster, inputs.voxel_size_m, refinement.orientations(),
-      ask_for_surfaces(search.weights), inputs.threads);
+  std::unique_ptr<ViewPredictor> predictor =
+      predictor_for(inputs, refinement.orientations(), ask_for_surfaces(search.weights));
   auto coarse_predictor = std::make_unique<SelectiveViewPredictor>(
       inputs.coarse_raster, inputs.voxel_size_m, refinement.orientations(), false, inputs.threads);
   return std::make_unique<PaperRefinedStrategy>(search, inputs.stop, inputs.voxel_size_m,
