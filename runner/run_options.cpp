@@ -303,7 +303,7 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
       ->capture_default_str()
       ->group(group);
   app.add_option("--directions", options.directions,
-                 fmt::format("Orientations tried at every position, one of {}; default: ",
+                 fmt::format("Orientations a view is chosen among at every position, one of {}; default: ",
                              fmt::join(bounds::kDirections, ", ")) +
                      of_strategies(
                          [](const auto& strategy) { return std::to_string(strategy.directions); }))
