@@ -31,6 +31,10 @@ install_missing() {
   mapfile -t missing < <(comm -23 <(printf '%s\n' "${packages[@]}" | sort) \
     <(dpkg-query -W -f='${db:Status-Status} ${Package}\n' "${packages[@]}" 2> /dev/null |
       sed -n 's/^installed //p' | sort))
+  # Node.js from elsewhere brings an npm of its own, which Debian's package would be at odds with.
+  if command -v npm > /dev/null; then
+    mapfile -t missing < <(printf '%s\n' "${missing[@]}" | grep -vx npm | grep .)
+  fi
   if [ "${#missing[@]}" = 0 ]; then
     return
   fi
@@ -98,6 +102,17 @@ set_up_programs() {
   # A folder configured for the tests will do as well.
   [ -e "$build/build.ninja" ] || configure -DNEXTVIEW_TESTS=OFF
   build_target programs
+}
+
+# set_up_viewer: what ./view and ./run --view need besides: the server, and its page.
+set_up_viewer() {
+  install_missing packages-to-run packages-to-view
+  [ -e "$build/build.ninja" ] || configure -DNEXTVIEW_TESTS=OFF
+  # A folder that was configured before Boost or npm was there.
+  grep -q viewer-page/site "$build/build.ninja" || cmake "$build" > "$install_log" 2>&1 ||
+    fail "$(cat "$install_log")"
+  build_target programs
+  build_target viewer_page
 }
 
 # set_up_java: what LCM's own windows need to decode our types.

@@ -7,6 +7,7 @@
 #include <nextview/commit_t.hpp>
 #include <nextview/goal_t.hpp>
 #include <nextview/map_blocks_t.hpp>
+#include <nextview/pace_t.hpp>
 #include <nextview/range_image_t.hpp>
 #include <nextview/request_t.hpp>
 #include <nextview/run_config_t.hpp>
@@ -30,7 +31,7 @@ struct TypeList {
 /// Every type of message. Whoever handles all of them goes by this list: for_each_channel, the
 /// encoder, the tests of every type. A test holds it against the .lcm files of this folder.
 using AllMessages = TypeList<run_config_t, goal_t, search_t, arrival_t, range_image_t, commit_t,
-                             stop_t, status_t, request_t, timing_t, map_blocks_t>;
+                             stop_t, status_t, request_t, timing_t, map_blocks_t, pace_t>;
 
 /// What tells the messages of one channel of one run apart.
 struct MessageKey {
@@ -156,6 +157,15 @@ struct Channel<map_blocks_t> {
   static constexpr std::array<LengthField, 2> lengths = {
       {{channel_detail::kFirstLength, 12 + 512},      // blocks: an index and 512 labels
        {channel_detail::kFirstLength + 4, 12 + 4}}};  // surfaces: a normal and a quality
+  static constexpr int strings = 0;
+};
+
+/// Published again and again while it matters.
+template <>
+struct Channel<pace_t> {
+  static constexpr std::string_view name = "NEXTVIEW_PACE";
+  static constexpr bool answered = false;
+  static constexpr channel_detail::NoLengths lengths = {};
   static constexpr int strings = 0;
 };
 

@@ -5,8 +5,8 @@
 namespace nextview {
 
 std::string Bounds::range() const {
-  if (most < bounds::kUnlimited) return fmt::format("from {:.5g} to {:.5g}", least, most);
-  return least > -bounds::kUnlimited ? fmt::format("of {:.5g} or more", least) : "and finite";
+  if (most < bounds::kUnlimited) return fmt::format("from {:.6g} to {:.6g}", least, most);
+  return least > -bounds::kUnlimited ? fmt::format("of {:.6g} or more", least) : "and finite";
 }
 
 std::string Bounds::refusal(double value) const {

@@ -66,7 +66,11 @@ void serve(Bus& bus, const MakeBusProcess& make, const std::function<bool()>& en
       continue;
     }
     const std::int64_t delivered = bus.counters().delivered;
-    bus.handle(std::min(timer.left(), process->longest_wait()));
+    // All that is there, so that no step is taken on half of what has been said.
+    for (bool more = bus.handle(std::min(timer.left(), process->longest_wait()));
+         more && !ended();) {
+      more = bus.handle(std::chrono::milliseconds(0));
+    }
     if (bus.counters().delivered != delivered) {
       timer.restart();
     } else if (timer.due()) {

@@ -1,7 +1,7 @@
 #pragma once
 
-#include <cstdio>
 #include <filesystem>
+#include <iostream>
 #include <string>
 
 #include "lcmtypes/program_version.h"
@@ -14,7 +14,7 @@ namespace nextview {
 inline bool tell_version(int argc, char** argv) {
   if (argc != 2 || std::string(argv[1]) != "--version") return false;
   const std::string name = std::filesystem::path(argv[0]).filename();
-  std::printf("%s %s\n", name.c_str(), std::string(program_version()).c_str());
+  std::cout << name << ' ' << program_version() << '\n';
   return true;
 }
 

@@ -257,6 +257,16 @@ std::string check(const map_blocks_t& blocks) {
   return checks.reason();
 }
 
+std::string check(const pace_t& pace) {
+  constexpr double kLongestHold_s = 60.0;
+  Checks checks;
+  checks.require(pace.utime == 0, "utime " + std::to_string(pace.utime) + " is not 0");
+  checks.require(pace.pace_number >= 0, "pace_number " + std::to_string(pace.pace_number));
+  checks.require(pace.last_view >= 0, "last_view " + std::to_string(pace.last_view));
+  checks.within("holds_s", pace.holds_s, 0.0, kLongestHold_s);
+  return checks.reason();
+}
+
 std::vector<std::string_view> names_of(std::string_view list) {
   std::vector<std::string_view> names;
   if (list.empty()) return names;

@@ -293,6 +293,15 @@ struct MessageFields<map_blocks_t> {
                                           NamedField{"surface_quality", &M::surface_quality}};
 };
 
+template <>
+struct MessageFields<pace_t> {
+  using M = pace_t;
+  static constexpr std::tuple list = {NamedField{"utime", &M::utime}, NamedField{"run", &M::run},
+                                      NamedField{"pace_number", &M::pace_number},
+                                      NamedField{"last_view", &M::last_view},
+                                      NamedField{"holds_s", &M::holds_s}};
+};
+
 namespace message_fields_detail {
 template <class T>
 concept HasFields = requires {

@@ -22,6 +22,7 @@ std::vector<UncheckedFields> unchecked_fields(const RunRecord& run, bool planner
       {"for others that follow the map, whose digest is in the commits",
        Channel<map_blocks_t>::name,
        {"*"}},
+      {kForPeople, Channel<pace_t>::name, {"*"}},
       {kForPeople, kConfig, {"scene_name", "program_version", "planner.threads"}},
       {"only the scene could tell, which a replay does not read",
        kConfig,

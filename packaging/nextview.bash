@@ -22,4 +22,4 @@ _nextview() {
       ;;
   esac
 }
-complete -F _nextview nextview nextview_run nextview_bound nextview_replay nextview_picture
+complete -F _nextview nextview nextview_run nextview_bound nextview_replay nextview_picture nextview_viewer

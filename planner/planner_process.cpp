@@ -35,11 +35,22 @@ void PlannerProcess::subscribe() {
     if (image) images_.emplace(part.view, std::move(*image));
   });
   bus_.on<commit_t>([this](const commit_t& commit) { commits_.emplace(commit.view, commit); });
+  bus_.on<pace_t>([this](const pace_t& pace) { pace_.hear(pace, Clock::now()); });
+}
+
+bool PlannerProcess::held() {
+  const auto now = Clock::now();
+  const bool holds = pace_.holds(view_ + 1, now);
+  // A pause counts as nobody's waiting.
+  if (holds && !held_) wait_wall_s_ += seconds_between(idle_since_, now);
+  if (holds || held_) idle_since_ = now;
+  return held_ = holds;
 }
 
 bool PlannerProcess::step() {
   if (ended_) return false;
   if (view_ == 0) {
+    if (held()) return false;
     view_ = 1;
     attempt_ = 1;
     publish_goal(start_goal_message(start_pose_of(config_), config_.strategy));
@@ -57,7 +68,7 @@ bool PlannerProcess::step() {
     }
     return false;
   }
-  if (const auto commit = commits_.find(view_); commit != commits_.end()) {
+  if (const auto commit = commits_.find(view_); commit != commits_.end() && !held()) {
     finish_view(commit->second);
     return true;
   }
@@ -159,7 +170,7 @@ void PlannerProcess::stop(StopReason reason, const std::string& detail) {
 }
 
 void PlannerProcess::ask_again() {
-  if (ended_) return;
+  if (ended_ || held_) return;
   if (folded_) {
     bus_.request<commit_t>(view_, 0);
   } else {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "lcmtypes/bus_process.h"
+#include "lcmtypes/heard_pace.h"
 #include "planner/view_planner.h"
 #include "sensor/range_image_message.h"
 
@@ -37,6 +38,8 @@ class PlannerProcess : public BusProcess {
   using Clock = std::chrono::steady_clock;
 
   void subscribe();
+  /// Whether the next goal has to wait because somebody has paused the run.
+  bool held();
   void fold(const ReceivedRangeImage& received);
   void finish_view(const commit_t& commit);
   void refused(const arrival_t& arrival);
@@ -63,6 +66,8 @@ class PlannerProcess : public BusProcess {
   bool folded_ = false;
   bool planned_ahead_ = false;
   bool ended_ = false;
+  HeardPace pace_;
+  bool held_ = false;  // when last looked
   std::int64_t utime_ = 0;
   std::string digest_;  // of the map after the last fold
   Clock::time_point idle_since_;

@@ -20,6 +20,7 @@ void HeardRun::listen(Bus& bus) {
   });
   bus.on<stop_t>(add);
   bus.on<timing_t>([this](const timing_t& timing) { record.add(timing); });
+  bus.on<pace_t>([this](const pace_t& message) { pace.hear(message, Clock::now()); });
   bus.on<status_t>([this](const status_t& status) {
     statuses[status.role] = status;
     fresh_statuses.insert(status.role);
@@ -29,6 +30,12 @@ void HeardRun::listen(Bus& bus) {
       asked_for_config.insert(request.asker);
     }
   });
+}
+
+bool HeardRun::paused() const {
+  const int view = record.latest_view();
+  const bool done = view == 0 || record.commit(view) != nullptr;
+  return done && pace.holds(view + 1, Clock::now());
 }
 
 }  // namespace nextview

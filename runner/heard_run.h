@@ -7,6 +7,7 @@
 #include <string>
 
 #include "lcmtypes/bus.h"
+#include "lcmtypes/heard_pace.h"
 #include "logger/run_record.h"
 
 namespace nextview {
@@ -22,6 +23,11 @@ struct HeardRun {
   Clock::time_point last_progress;           ///< when something new of the run came
   std::optional<Clock::time_point> first_goal;
   std::optional<Clock::time_point> last_commit;
+
+  HeardPace pace;
+
+  /// Whether somebody who watches the run has paused it, so that nothing is to be waited for.
+  bool paused() const;
 
   /// Has everything of the run that the bus delivers come here; this must outlive the bus's
   /// handlers and stay where it is.

@@ -23,6 +23,7 @@ constexpr Command kCommands[] = {
     {"replay", "Rebuild a run's map from its log and compare every digest"},
     {"picture", "Draw what a run has recovered"},
     {"export", "Write a run's voxels, points and poses for other programs"},
+    {"viewer", "Show runs in a browser, also one that goes on"},
     {"search", "What the search for a view has tried"},
     {"bound", "How few views and metres a scene takes at least"},
     {"sensor_sim", "The simulated sensor's process alone"},

@@ -64,8 +64,8 @@ int run(const nextview::RunOptions& options, nextview::RunSupervisor::Clock::tim
   nextview::Progress progress(std::cout, ::isatty(STDOUT_FILENO) ? Style::Bar : Style::Lines,
                               setup.config.planner.max_views);
   for (const std::string& warning : setup.warnings) progress.say("warning: " + warning);
-  const FinishedRun finished =
-      nextview::RunSupervisor(options, std::move(setup), folder, progress).carry_out(start);
+  nextview::RunSupervisor supervisor(options, std::move(setup), folder, progress);
+  const FinishedRun finished = supervisor.carry_out(start);
   progress.finish();
   write_artefacts(finished, files);
   nextview::write_table(std::cout, finished);
@@ -77,6 +77,7 @@ int run(const nextview::RunOptions& options, nextview::RunSupervisor::Clock::tim
     std::cerr << "nextview_run: " << finished.stop_reason << ": " << finished.stop_detail
               << std::endl;
   }
+  supervisor.show_until_closed();
   return status;
 }
 

@@ -158,6 +158,12 @@ void add_run_options(CLI::App& app, RunOptions& options) {
                "same")
       ->check(number_within(bounds::kRealTime))
       ->group(group);
+  app.add_flag("--view", options.view,
+               "Show the run in a browser, at the address it prints, until Ctrl-C")
+      ->group(group);
+  app.add_flag("--paused", options.paused,
+               "With --view: begin when the page says so, with a step or to go on")
+      ->group(group);
   app.add_option("--cache", options.cache,
                  "Folder that keeps what can be seen of a scene, which takes minutes in a large "
                  "building; default: NEXTVIEW_CACHE, else XDG_CACHE_HOME/nextview, else "
@@ -406,6 +412,7 @@ std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_sta
       "  ./run                                  the paper's first room, 60 views\n"
       "  ./run columns --seed 3 --quality       the second one, for quality, 300 views\n"
       "  ./run flat.dae --start 1.0 2.5 1.2     a CAD model of yours\n"
+      "  ./run --view                           watched in a browser\n"
       "  ./run --without sensor_sim,base_sim --start 1 2 1.2 --workspace 0 0 0 8 6 3\n"
       "                                         a robot of yours, see README\n"
       "  ./run hall.stl --unit cm --up y --start 4 4 1.5 --voxel-size 0.05\n\n"
@@ -426,6 +433,9 @@ std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_sta
     app.parse(argc, argv);
     const std::filesystem::path scene = options.scene.value_or("");
     if (scene.extension() == ".toml") apply_scene_file(scene, app);
+    if (options.paused && !options.view) {
+      throw CLI::ValidationError("--paused", "needs --view, whose page lets the run go on");
+    }
   } catch (const CLI::ParseError& error) {
     exit_status = app.exit(error);
     return std::nullopt;

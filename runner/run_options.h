@@ -80,6 +80,8 @@ struct RunOptions {
   double bound_spacing_m = 0.40;  ///< of the positions nextview_bound looks at
   bool no_coverage = false;       ///< surface_coverage is not worked out
   bool verbose = false;
+  bool view = false;    ///< shown in a browser while it goes on
+  bool paused = false;  ///< with view: goes no further than the page says
 
   std::string bound_command;  ///< for a shell: works out the bounds for what has been typed
 };

@@ -77,22 +77,26 @@ void fill_start(run_config_t& config, const RunOptions& options, const SceneDesc
   config.base.start_tilt_rad = options.start_tilt_deg * kRadPerDegree;
 }
 
+/// The options of which a sensor is made, as typed.
+std::string sensor_options_typed(const RunOptions& options) {
+  const SensorOptions& given = options.given_of_sensor;
+  std::string typed = "--sensor";
+  if (options.aperture_deg) typed += ", --aperture";
+  if (given.range_min_m) typed += ", --range-min";
+  if (given.range_max_m) typed += ", --range-max";
+  return typed;
+}
+
 SensorModel sensor_given(const RunOptions& options) {
   SensorOptions given = options.given_of_sensor;
   if (options.aperture_deg) given.aperture_rad = *options.aperture_deg * kRadPerDegree;
-  SensorModel sensor;
   try {
     const bool ours = options.sensors_folder.empty();
-    sensor =
-        find_sensor(options.sensor, ours ? NEXTVIEW_SENSORS_FOLDER : options.sensors_folder, given);
+    return find_sensor(options.sensor, ours ? NEXTVIEW_SENSORS_FOLDER : options.sensors_folder,
+                       given);
   } catch (const SensorError& error) {
-    throw SetupError(std::string(options.aperture_deg ? "--sensor, --aperture: " : "--sensor: ") +
-                     error.what());
+    throw SetupError(sensor_options_typed(options) + ": " + error.what());
   }
-  if (sensor.limits.min_m >= sensor.limits.max_m) {
-    throw SetupError("--range-min must be below --range-max");
-  }
-  return sensor;
 }
 
 void fill_prediction_rays(planner_config_t& planner, const std::string& given) {

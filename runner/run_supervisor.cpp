@@ -10,6 +10,7 @@
 #include <numbers>
 #include <random>
 #include <set>
+#include <thread>
 #include <utility>
 
 #include "base_sim/base.h"
@@ -125,20 +126,43 @@ void RunSupervisor::start_up() {
     progress_.say(fmt::format("bus: {}, run {}", lcm_url_, setup_.config.run));
   }
 
+  start_viewer();
+
   // Nothing is known about a run before its configuration is, so the run starts with it: not before
   // all processes have asked for it, and requests are seen to arrive in the log.
   heard_.last_progress = Clock::now();
   const std::set<std::string> answering(answering_.begin(), answering_.end());
-  pump_until([&] { return recording() && all_of(answering, heard_.asked_for_config); });
+  pump_until([&] {
+    const bool viewer_ready =
+        !viewer_ || !viewer_->running() || heard_.asked_for_config.contains(ViewerProcess::kRole);
+    return recording() && viewer_ready && all_of(answering, heard_.asked_for_config);
+  });
   heard_.record.add(setup_.config);
   bus_->publish(setup_.config);
   heard_.last_progress = Clock::now();
   if (setup_.scene) start_scoring();
   // Each says so when it has loaded what it needs; only then is there somebody to hear a goal.
   pump_until([&] { return all_of(answering, heard_.fresh_statuses); });
+  // Who has paused the run before its first view may not be heard by a planner that only starts.
+  pump_until([&] { return !heard_.pace.holds(1, Clock::now()); });
   processes_->start_planner(options_.planner);
   for (const std::string& note : setup_.notes) progress_.say(note);
   heard_.last_progress = Clock::now();
+}
+
+void RunSupervisor::start_viewer() {
+  if (!options_.view) return;
+  viewer_.emplace(lcm_url_, setup_.config.run, options_.paused);
+}
+
+void RunSupervisor::show_until_closed() {
+  if (!viewer_ || !viewer_->running()) return;
+  progress_.say("the page stays there to be looked at until Ctrl-C: " + viewer_->address());
+  while (viewer_->running() && noted_signal() == 0) {
+    for (const std::string& line : viewer_->take_lines()) progress_.say(line);
+    std::this_thread::sleep_for(milliseconds(50));
+  }
+  viewer_.reset();
 }
 
 bool RunSupervisor::recording() {
@@ -356,6 +380,7 @@ void RunSupervisor::pump(milliseconds timeout) {
   if (noted_signal() != 0) {
     throw EndsEarly{StopReason::Interrupted, "The run was interrupted by a signal."};
   }
+  if (heard_.paused()) heard_.last_progress = Clock::now();
   if (seconds_between(heard_.last_progress, Clock::now()) >
       options_.patience_s + watched_motion_s()) {
     throw EndsEarly{StopReason::NoAnswer,
@@ -379,6 +404,10 @@ double RunSupervisor::watched_motion_s() const {
 }
 
 void RunSupervisor::check_on_processes() {
+  if (viewer_) {
+    viewer_->running();  // whether or not it does, the run goes on
+    for (const std::string& line : viewer_->take_lines()) progress_.say(line);
+  }
   if (!processes_) return;
   const std::optional<std::string> casualty = processes_->casualty();
   for (const std::string& line : processes_->take_lines()) progress_.say(line);

@@ -16,6 +16,7 @@
 #include "runner/port_lock.h"
 #include "runner/run_processes.h"
 #include "runner/run_setup.h"
+#include "runner/viewer_process.h"
 #include "scoring/near_surface.h"
 
 namespace nextview {
@@ -34,6 +35,8 @@ class RunSupervisor {
   /// Carries the run out.
   /// @throws SetupError or BusError when it cannot start
   FinishedRun carry_out(Clock::time_point program_start);
+  /// After the run, with --view: waits until the viewer has ended, or a signal ends it.
+  void show_until_closed();
 
  private:
   /// Thrown when the run cannot go on to its own end.
@@ -44,6 +47,7 @@ class RunSupervisor {
 
   void start_up();
   void join_bus();
+  void start_viewer();
   bool recording();
   void start_scoring();
   void watch();
@@ -77,6 +81,7 @@ class RunSupervisor {
   std::string lcm_url_;
   std::unique_ptr<Bus> bus_;
   std::optional<RunProcesses> processes_;
+  std::optional<ViewerProcess> viewer_;
   std::optional<RunLog> log_;
   std::optional<EndsEarly> ended_early_;
 

@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <cstdint>
 
-#include "lcmtypes/parameter_bounds.h"
 #include "sensor/vector_clones.h"
 
 namespace nextview {
@@ -29,8 +28,7 @@ bool is_rotation(const Eigen::Matrix3d& matrix) {
 }
 
 bool are_range_limits(const RangeLimits& limits) {
-  return bounds::kRangeMin.contain(limits.min_m) && bounds::kRangeMax.contain(limits.max_m) &&
-         limits.min_m < limits.max_m;
+  return limits.min_m >= 0.0 && limits.min_m < limits.max_m && std::isfinite(limits.max_m);
 }
 
 // Goes on to the end, wrong or not, because only then compilers make vectors of it.

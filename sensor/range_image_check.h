@@ -20,7 +20,7 @@ bool on_unit_circle(std::span<const double> sines, std::span<const double> cosin
 /// Whether a matrix turns and does not stretch, shear or mirror.
 bool is_rotation(const Eigen::Matrix3d& matrix);
 
-/// Whether both are what range limits may be, and the minimum is below the maximum.
+/// Whether 0 <= minimum < maximum, both finite.
 bool are_range_limits(const RangeLimits& limits);
 
 /// Whether no range is negative, -inf included. NaN and +inf are said on purpose (RangeKind), and

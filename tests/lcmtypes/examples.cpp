@@ -206,4 +206,14 @@ map_blocks_t example() {
   return blocks;
 }
 
+template <>
+pace_t example() {
+  pace_t pace{};
+  pace.run = 7;
+  pace.pace_number = 12;
+  pace.last_view = 3;
+  pace.holds_s = 2.0;
+  return pace;
+}
+
 }  // namespace nextview

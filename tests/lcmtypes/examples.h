@@ -30,5 +30,7 @@ template <>
 timing_t example();
 template <>
 map_blocks_t example();
+template <>
+pace_t example();
 
 }  // namespace nextview

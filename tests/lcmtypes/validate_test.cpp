@@ -270,6 +270,17 @@ TEST(Validate, MapBlocks) {
   EXPECT_EQ(check(nothing_changed), "");
 }
 
+TEST(Validate, Paces) {
+  expect_all_refused<pace_t>({
+      {"simulated time", [](pace_t& m) { m.utime = 1; }},
+      {"a negative number", [](pace_t& m) { m.pace_number = -1; }},
+      {"a negative view", [](pace_t& m) { m.last_view = -1; }},
+      {"a hold without end", [](pace_t& m) { m.holds_s = kInf; }},
+      {"a hold of two minutes", [](pace_t& m) { m.holds_s = 120.0; }},
+      {"a negative hold", [](pace_t& m) { m.holds_s = -1.0; }},
+  });
+}
+
 TEST(Validate, NamesOfAList) {
   EXPECT_EQ(names_of(""), std::vector<std::string_view>{});
   EXPECT_EQ(names_of("a"), std::vector<std::string_view>{"a"});

@@ -79,6 +79,9 @@ Recording record_run() {
   run_bus.request<status_t>(0, 0);
   for (Bus* bus : {&base_bus, &sensor_bus, &mapper_bus}) say_ready(*bus);
   mapper_bus.publish(example<map_blocks_t>());
+  pace_t pace = example<pace_t>();
+  pace.last_view = config.planner.max_views + 1;  // as far as the run goes
+  run_bus.publish(pace);
   const auto turn = [&] {
     bool worked = planner.step();
     worked |= sensor.step();

@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
 #include <map>
 #include <optional>
 #include <set>
@@ -97,6 +98,51 @@ class PlannerOnTheBus : public testing::Test {
   std::map<int, ReceivedRangeImage> images_;
   std::optional<stop_t> stop_;
 };
+
+TEST_F(PlannerOnTheBus, GivesNoGoalBeyondAPaceAndTheSameGoalsAfterIt) {
+  const auto go_to = [this](std::int64_t number, int view, double holds_s) {
+    pace_t pace{};
+    pace.pace_number = number;
+    pace.last_view = view;
+    pace.holds_s = holds_s;
+    watcher_.publish(pace);
+    while (turn(true)) {
+    }
+  };
+  const auto last_goal = [this] { return goals_.empty() ? 0 : goals_.rbegin()->first.first; };
+  constexpr int kAnyView = std::numeric_limits<std::int32_t>::max();
+  planner_bus_.handle(milliseconds(0));
+  watcher_.publish([] {
+    pace_t pace{};
+    pace.pace_number = 1;
+    pace.holds_s = 60.0;
+    return pace;
+  }());
+  planner_bus_.handle(milliseconds(0));
+  run();
+  EXPECT_EQ(last_goal(), 0) << "paused before the start";
+  go_to(2, 1, 60.0);
+  EXPECT_EQ(last_goal(), 1) << "a step";
+  const std::size_t said = network_.published().size();
+  planner_.ask_again();
+  EXPECT_EQ(network_.published().size(), said) << "it waits for nobody's answer";
+  go_to(4, 3, 60.0);
+  EXPECT_EQ(last_goal(), 3);
+  go_to(3, kAnyView, 60.0);
+  EXPECT_EQ(last_goal(), 3) << "overtaken by the one before it";
+  go_to(5, 3, 0.0);
+  EXPECT_EQ(last_goal(), 6) << "a pace that holds no longer";
+  ASSERT_TRUE(stop_);
+  EXPECT_EQ(stop_->views, 6);
+
+  // The same as of a planner that nobody has paused.
+  const std::unique_ptr<ViewPlanner> planner = make_view_planner(config_);
+  for (int view = 1; view < 6; ++view) {
+    planner->fold(images_.at(view).image);
+    const auto& decision = std::get<Decision>(planner->next_view());
+    EXPECT_EQ(Eigen::Vector3d(goals_.at({view + 1, 1}).position_m), decision.pose.position_m);
+  }
+}
 
 TEST_F(PlannerOnTheBus, DecidesAfterRefusalsOnWhatItHasFoldedAndOnThemAlone) {
   refused_ = {{3, 1}, {5, 1}, {5, 2}};

@@ -377,6 +377,9 @@ std::vector<Row> rows() {
   add({"kStopNewArea", kStopNewArea, "--stop-new-area",
        planner(&planner_config_t::stop_new_area_m2),
        [](double v) { checked<StopParameters>([v](auto& p) { p.stop_new_area_m2 = v; }); }});
+  add({"kStopImprovement", kStopImprovement, "", {}, [](double v) {
+         checked<StopParameters>([v](auto& p) { p.stop_improvement = v; });
+       }});
   add({"kPathCost", kPathCost, "--path-cost", planner(&planner_config_t::path_cost_per_m),
        [](double v) { checked<SurfaceParameters>([v](auto& p) { p.path_cost_per_m = v; }); }});
   add({"kLeastOverlap", kLeastOverlap, "--least-overlap", planner(&planner_config_t::least_overlap),

@@ -71,5 +71,30 @@ TEST(WaitedFor, ARefusedGoalIsThePlannersAgain) {
   EXPECT_EQ(waited_for(heard, kAll), "the planner gave no goal after view 2");
 }
 
+TEST(HeardRun, IsPausedBetweenViewsOnly) {
+  HeardRun heard = run_at_goal_of(0);
+  EXPECT_FALSE(heard.paused());
+  pace_t pace{};
+  pace.holds_s = 60.0;
+  heard.pace.hear(pace, HeardRun::Clock::now());
+  EXPECT_TRUE(heard.paused()) << "before view 1";
+  pace.pace_number = 1;
+  pace.last_view = 1;
+  heard.pace.hear(pace, HeardRun::Clock::now());
+  EXPECT_FALSE(heard.paused()) << "view 1 may come";
+  goal_t goal{};
+  goal.view = 1;
+  goal.attempt = 1;
+  heard.record.add(goal);
+  EXPECT_FALSE(heard.paused()) << "somebody works on view 1, and is waited for";
+  commit_t commit{};
+  commit.view = 1;
+  commit.attempt = 1;
+  heard.record.add(commit);
+  EXPECT_TRUE(heard.paused());
+  heard.pace.hear(pace, HeardRun::Clock::now() - std::chrono::seconds(61));
+  EXPECT_FALSE(heard.paused()) << "nothing was heard of the viewer for a minute";
+}
+
 }  // namespace
 }  // namespace nextview

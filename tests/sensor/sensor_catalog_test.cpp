@@ -116,7 +116,10 @@ TEST(SensorCatalog, SaysWhatIsWrongWithAFile) {
   has(refusal_of(R"({"geometry": "tilted_line_scan", "columns": 9, "rows": 9,
       "horizontal_aperture_deg": 60})",
                  given),
-      "between 0 and 90");
+      "of 100 degrees is not from");
+  has(refusal_of(R"({"geometry": "tilted_line_scan", "columns": 9, "rows": 9,
+      "horizontal_aperture_deg": 60, "range_max_m": 1e6})"),
+      "range_max_m = 1e+06 is not a number from");
 }
 
 TEST(SensorCatalog, SaysWhichNamesThereAre) {

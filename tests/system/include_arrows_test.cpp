@@ -42,6 +42,7 @@ const std::map<std::string, Arrows> kArrows = {
     {"scoring", {{"sensor", "scene", "sensor_sim", "mapper", "planner/prediction"}, {}}},
     {"reports", {{"sensor", "scene", "mapper", "planner"}, {"logger", "scoring"}, OnTheBus::Whole}},
     {"exporter", {{}, {"sensor", "mapper", "logger", "reports"}, OnTheBus::Whole}},
+    {"viewer", {{}, {"sensor", "scene", "mapper", "logger"}, OnTheBus::Whole}},
     {"runner",
      {{},
       {"sensor", "scene", "sensor_sim", "base_sim", "mapper", "planner", "logger", "scoring",
