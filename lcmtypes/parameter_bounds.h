@@ -94,8 +94,9 @@ inline constexpr Bounds kMaxAttempts{"max_attempts", 1, 1e6};
 inline constexpr Bounds kThreads{"threads", 1, 256};
 inline constexpr Bounds kStep{"step_min_m or step_max_m", 1e-4, 1e5};
 inline constexpr Bounds kFitnessTolerance{"fitness_tolerance", 0.0, 2.0};
-/// Orientations tried at every position: the faces of an icosahedron, each parted in four again.
-inline constexpr std::array<int, 4> kDirections{20, 80, 320, 1280};
+/// Orientations a view is chosen among: the faces of an icosahedron, each parted in four again. The
+/// last are 1.4 degrees apart, which is what a panorama tells apart.
+inline constexpr std::array<int, 6> kDirections{20, 80, 320, 1280, 5120, 20480};
 /// Both 0: the planner chooses. A view is predicted in many orientations at many positions.
 inline constexpr Bounds kPredictionRays{"prediction_columns or prediction_rows", 2, 512};
 /// What was tried for one goal has to fit one search_t.

@@ -151,7 +151,8 @@ std::optional<Decision> decide_by_simplex(const Situation& situation, ShortestPa
   }
   const SensorPose& present = situation.present;
   FeasiblePositions feasible(situation, paths, parameters.feasibility);
-  ViewEvaluator evaluator(situation.space, predictor, parameters.weights, present, paths);
+  ViewEvaluator evaluator(situation.space, predictor, parameters.weights, present, paths,
+                          parameters.refined_by());
   const auto values = [&](std::span<const Eigen::Vector3d> positions_m) {
     std::vector<Eigen::Vector3d> reachable_m;
     std::vector<double> result(positions_m.size(), kInfeasible);
@@ -235,8 +236,10 @@ NextView PaperStrategy::next_view(const Situation& situation) {
 
 NextView PaperStrategy::last_look(const Situation& situation, StopReason otherwise) {
   paths_.find_all();
-  ViewEvaluator evaluator(situation.space, *predictor_, {}, situation.present, paths_);
-  ViewEvaluator coarse(situation.space, *coarse_predictor_, {}, situation.present, paths_);
+  const FaceRefinement* refinement = search_.refined_by();
+  ViewEvaluator evaluator(situation.space, *predictor_, {}, situation.present, paths_, refinement);
+  ViewEvaluator coarse(situation.space, *coarse_predictor_, {}, situation.present, paths_,
+                       refinement);
   const std::optional<LastLook::View> found =
       last_look_.best_view(situation, paths_, coarse, evaluator);
   if (!found) {

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "planner/clear_space.h"
+#include "planner/face_refinement.h"
 #include "planner/feasibility.h"
 #include "planner/last_look.h"
 #include "planner/prediction/view_predictor.h"
@@ -24,14 +25,18 @@ struct PlannerParameters {
   double fitness_tolerance = 0.01;  ///< the simplex stops when its fitness range falls below
   int max_evaluations = 70;         ///< or after this many positions
   FeasibilityParameters feasibility;
+  /// How the orientations are looked through at a position; without it, all the predictor's. The
+  /// predictor has its orientations.
+  std::optional<FaceRefinement> refinement = {};
 
+  const FaceRefinement* refined_by() const { return refinement ? &*refinement : nullptr; }
   /// @throws std::invalid_argument naming the parameter that cannot be
   void check() const;
 };
 
 /// Decides the next best view by hill climbing over positions with a simplex (P21), at each
-/// position exhaustively over the predictor's orientations (P20), as far as the known map lets the
-/// robot go (P19): a position is feasible when a path leads there.
+/// position over the predictor's orientations, all or as the refinement says (P20), as far as the
+/// known map lets the robot go (P19): a position is feasible when a path leads there.
 /// @param paths stand at the present position; all of them are found when one is asked for that is
 ///        not straight
 /// @return nothing when no position is feasible; the voxels of refused goals are not

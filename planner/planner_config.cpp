@@ -50,10 +50,10 @@ StopParameters stop_parameters_of(const run_config_t& config) {
           .stop_improvement = StopParameters{}.stop_improvement};
 }
 
-std::vector<Orientation> orientations_of(const run_config_t& config) {
+int subdivisions_of(const run_config_t& config) {
   int subdivisions = 0;
   for (int faces = 20; faces < config.planner.directions; faces *= 4) ++subdivisions;
-  return icosahedron_orientations(subdivisions);
+  return subdivisions;
 }
 
 PredictionRaster raster_of(const run_config_t& config, const PredictionRays& at_most) {
@@ -99,7 +99,8 @@ StrategyInputs strategy_inputs_of(const run_config_t& config) {
   return {.voxel_size_m = config.map.voxel_size_m,
           .raster = raster_of(config),
           .coarse_raster = coarse_raster_of(config),
-          .orientations = orientations_of(config),
+          .subdivisions = subdivisions_of(config),
+          .orientations = icosahedron_orientations(subdivisions_of(config)),
           .threads = config.planner.threads,
           .search = planner_parameters_of(config),
           .stop = stop_parameters_of(config),

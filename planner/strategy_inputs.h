@@ -3,6 +3,7 @@
 #include <string_view>
 #include <vector>
 
+#include "planner/paper_refined_strategy.h"
 #include "planner/paper_strategy.h"
 #include "planner/paper_tidy_up_strategy.h"
 #include "planner/prediction/orientations.h"
@@ -18,7 +19,8 @@ struct StrategyInputs {
   double voxel_size_m = 0.10;             ///< of the map
   PredictionRaster raster;                ///< the rays a view is predicted with
   PredictionRaster coarse_raster;         ///< the same with a sixteenth of the rays
-  std::vector<Orientation> orientations;  ///< tried at every position
+  int subdivisions = 0;                   ///< of an icosahedron's faces, whose centres are the ...
+  std::vector<Orientation> orientations;  ///< ... orientations a view is chosen among
   int threads = 1;                        ///< of no influence on the results
   PlannerParameters search;               ///< of a simplex
   StopParameters stop;                    ///< the paper's rules

@@ -4,6 +4,7 @@
 #include <memory>
 #include <string_view>
 
+#include "planner/paper_refined_strategy.h"
 #include "planner/paper_strategy.h"
 #include "planner/paper_tidy_up_strategy.h"
 #include "planner/strategy.h"
@@ -33,6 +34,7 @@ struct StrategyTypes {
 // clang-format off
 using AllStrategies = StrategyTypes<
     PaperStrategy,
+    PaperRefinedStrategy,
     PaperTidyUpStrategy,
     SurfaceStrategy
 >;

@@ -322,11 +322,12 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
       ->check(number_within(bounds::kDeparture))
       ->capture_default_str()
       ->group(group);
-  app.add_option("--directions", options.directions,
-                 fmt::format("Orientations tried at every position, one of {}; default: ",
-                             fmt::join(bounds::kDirections, ", ")) +
-                     of_strategies(
-                         [](const auto& strategy) { return std::to_string(strategy.directions); }))
+  app.add_option(
+         "--directions", options.directions,
+         fmt::format("Orientations a view is chosen among at every position, one of {}; default: ",
+                     fmt::join(bounds::kDirections, ", ")) +
+             of_strategies(
+                 [](const auto& strategy) { return std::to_string(strategy.directions); }))
       ->check(
           CLI::IsMember(std::vector<int>(bounds::kDirections.begin(), bounds::kDirections.end())))
       ->group(group);

@@ -7,7 +7,7 @@
 #include <stdexcept>
 
 #include "lcmtypes/parameter_bounds.h"
-#include "sensor/sensor_pose.h"
+#include "planner/prediction/view_packets.h"
 
 namespace nextview {
 
@@ -17,77 +17,6 @@ constexpr std::size_t kPacketRays = RayBundle::kPacketRays;
 
 /// What a thread takes from a table at a time when there are several: a few microseconds of work.
 constexpr std::size_t kPortion = 64;
-
-struct TabulatedRay {
-  IntegerLine line;  // from voxel (0, 0, 0)
-  QuantisedDirection direction;
-  std::uint32_t place;  // along a curve through all directions of its table
-};
-
-struct Packet {
-  std::int32_t orientation;
-  std::array<TabulatedRay, kPacketRays> rays;
-  std::size_t count;  // of rays; the others are copies of the last
-
-  std::uint32_t place() const { return rays[count / 2].place; }
-};
-
-// The place of a direction along Morton's curve: those that are near each other on it are near each
-// other in direction.
-std::uint32_t place_of(const IntegerLine& line) {
-  constexpr int kBits = 11;
-  constexpr int kDropped = IntegerLine::kFractionBits + 1 - kBits;
-  std::uint32_t place = 0;
-  for (int across = 1; across <= 2; ++across) {
-    const std::int32_t slope = line.slope[(line.driving_axis + across) % 3];
-    const auto cell =
-        static_cast<std::uint32_t>(slope + (1 << IntegerLine::kFractionBits)) >> kDropped;
-    for (int bit = 0; bit <= kBits; ++bit) place |= (cell >> bit & 1) << (2 * bit + across - 1);
-  }
-  return place;
-}
-
-// The rays of an orientation, by driving axis and sign, and in packets of neighbours.
-std::array<std::vector<Packet>, 6> packets_of(const RayTable& rays, const Orientation& orientation,
-                                              std::int32_t number, double reach) {
-  const Eigen::Matrix3d rotation =
-      world_from_sensor_rotation(orientation.pan_rad, orientation.tilt_rad);
-  std::array<std::vector<TabulatedRay>, 6> tabulated;
-  for (int v = 0; v < rays.rows(); ++v) {
-    for (int u = 0; u < rays.columns(); ++u) {
-      const Eigen::Vector3d direction = rotation * rays.ray(u, v);
-      const IntegerLine line = line_along(VoxelIndex::Zero(), direction, reach);
-      tabulated[static_cast<std::size_t>(2 * line.driving_axis + (line.direction < 0))].push_back(
-          {line, quantise_direction(direction), place_of(line)});
-    }
-  }
-  std::array<std::vector<Packet>, 6> packets;
-  for (std::size_t table = 0; table < tabulated.size(); ++table) {
-    auto& sorted = tabulated[table];
-    std::stable_sort(
-        sorted.begin(), sorted.end(),
-        [](const TabulatedRay& a, const TabulatedRay& b) { return a.place < b.place; });
-    for (std::size_t begin = 0; begin < sorted.size(); begin += kPacketRays) {
-      Packet packet{number, {}, std::min(kPacketRays, sorted.size() - begin)};
-      for (std::size_t i = 0; i < kPacketRays; ++i) {
-        packet.rays[i] = sorted[begin + std::min(i, packet.count - 1)];
-      }
-      packets[table].push_back(packet);
-    }
-  }
-  return packets;
-}
-
-void append(const Packet& packet, RayBundle& bundle) {
-  bundle.group.push_back(packet.orientation);
-  RayBundle::Packet& columns = bundle.packets.emplace_back();
-  for (std::size_t i = 0; i < kPacketRays; ++i) {
-    const IntegerLine& line = packet.rays[i].line;
-    columns.slope1[i] = line.slope[(line.driving_axis + 1) % 3];
-    columns.slope2[i] = line.slope[(line.driving_axis + 2) % 3];
-    columns.reach[i] = i < packet.count ? line.steps : -1;
-  }
-}
 
 }  // namespace
 
@@ -103,7 +32,7 @@ FastViewPredictor::FastViewPredictor(const PredictionRaster& raster, double voxe
 }
 
 void FastViewPredictor::make_tables(const PredictionRaster& raster, double voxel_size_m) {
-  std::array<std::vector<Packet>, 6> packets;
+  std::array<std::vector<RayPacket>, 6> packets;
   for (std::size_t i = 0; i < orientations().size(); ++i) {
     const auto of_view = packets_of(raster.rays, orientations()[i], static_cast<std::int32_t>(i),
                                     prediction_reach(raster, voxel_size_m));
@@ -113,11 +42,11 @@ void FastViewPredictor::make_tables(const PredictionRaster& raster, double voxel
   }
   for (std::size_t i = 0; i < tables_.size(); ++i) {
     std::stable_sort(packets[i].begin(), packets[i].end(),
-                     [](const Packet& a, const Packet& b) { return a.place() < b.place(); });
+                     [](const RayPacket& a, const RayPacket& b) { return a.place() < b.place(); });
     Table& table = tables_[i];
     table.bundle.driving_axis = static_cast<int>(i / 2);
     table.bundle.direction = i % 2 == 0 ? 1 : -1;
-    for (const Packet& packet : packets[i]) {
+    for (const RayPacket& packet : packets[i]) {
       append(packet, table.bundle);
       if (!counts_surfaces()) continue;
       packets_of_[static_cast<std::size_t>(packet.orientation)].push_back(

@@ -103,6 +103,7 @@ PanoramaViewPredictor::PanoramaViewPredictor(const PredictionRaster& raster, dou
   bounds::kThreads.require(threads);
   faces_ = cube_faces(prediction_reach(raster, voxel_size_m));
   for (const Orientation& orientation : this->orientations()) {
+    all_views_.push_back(views_.size());
     append_view(raster.rays, orientation);
   }
   if (!counts_surfaces) return;
@@ -152,7 +153,7 @@ void PanoramaViewPredictor::append_view(const RayTable& rays, const Orientation&
 }
 
 // Compiled once more for processors that count bits in one instruction.
-[[gnu::target_clones("popcnt", "default")]] ViewCounts PanoramaViewPredictor::count(
+[[gnu::target_clones("popcnt", "default")]] ViewCounts PanoramaViewPredictor::count_cells(
     const Panorama& panorama, bool any_open, const WeightWord* begin, const WeightWord* end) {
   const auto population = [](const std::vector<std::uint64_t>& bits, const WeightWord& weight) {
     return static_cast<std::int64_t>(std::popcount(bits[weight.word] & weight.cells))
@@ -182,29 +183,38 @@ bool PanoramaViewPredictor::any_is_open() const {
 void PanoramaViewPredictor::predict(const KnownSpace& space, const VoxelIndex& sensor,
                                     std::span<ViewCounts> per_orientation) {
   check_arguments(space.map(), sensor, per_orientation.size());
+  look_from(space, sensor);
+  count(all_views_, per_orientation);
+}
+
+void PanoramaViewPredictor::look_from(const KnownSpace& space, const VoxelIndex& sensor) {
+  check_arguments(space.map(), sensor, orientations().size());
   for (auto* bits : {&panorama_.occupied, &panorama_.occlusion_plane, &panorama_.unseen}) {
     bits->assign(kWords, 0);
   }
-  const SurfaceTable* const surfaces = counts_surfaces() ? &space.surfaces() : nullptr;
-  const auto threads = static_cast<int>(surface_counts_.size());
-#pragma omp parallel num_threads(threads) if (threads > 1)
-  {
-    SurfaceCount& count_of_thread = surface_counts_[static_cast<std::size_t>(omp_get_thread_num())];
-#pragma omp for schedule(dynamic)
-    for (std::size_t face = 0; face < faces_.size(); ++face) {
-      cast_face(space.field(), face, sensor);
-      if (surfaces != nullptr) look_up(*surfaces, face);
-    }
-    const bool any_open = any_is_open();
-#pragma omp for schedule(dynamic, 16)
-    for (std::size_t i = 0; i < views_.size(); ++i) {
-      ViewCounts& counts = per_orientation[i];
-      counts =
-          count(panorama_, any_open, &weights_[views_[i].begin], weights_.data() + views_[i].end);
-      std::int64_t& rest = any_open ? counts.open : counts.unseen;
-      rest = rays_per_view_ - counts.occupied - counts.occlusion_plane - counts.unseen;
-      if (surfaces != nullptr) count_surfaces(*surfaces, views_[i], count_of_thread, counts);
-    }
+  surfaces_ = counts_surfaces() ? &space.surfaces() : nullptr;
+#pragma omp parallel for schedule(dynamic) num_threads(threads()) if (threads() > 1)
+  for (std::size_t face = 0; face < faces_.size(); ++face) {
+    cast_face(space.field(), face, sensor);
+    if (surfaces_ != nullptr) look_up(*surfaces_, face);
+  }
+  any_open_ = any_is_open();
+}
+
+void PanoramaViewPredictor::count(std::span<const std::size_t> which,
+                                  std::span<ViewCounts> counts) {
+  check_asked(which.size(), counts.size());
+#pragma omp parallel for schedule(dynamic, 16) \
+    num_threads(threads()) if (threads() > 1 && which.size() > 16)
+  for (std::size_t i = 0; i < which.size(); ++i) {
+    const View& view = views_[which[i]];
+    ViewCounts& of_view = counts[i];
+    of_view = count_cells(panorama_, any_open_, &weights_[view.begin], weights_.data() + view.end);
+    std::int64_t& rest = any_open_ ? of_view.open : of_view.unseen;
+    rest = rays_per_view_ - of_view.occupied - of_view.occlusion_plane - of_view.unseen;
+    if (surfaces_ == nullptr) continue;
+    const auto thread = static_cast<std::size_t>(omp_get_thread_num());
+    count_surfaces(*surfaces_, view, surface_counts_[thread], of_view);
   }
 }
 

@@ -43,6 +43,10 @@ class PanoramaViewPredictor : public RasterViewPredictor {
 
   void predict(const KnownSpace& space, const VoxelIndex& sensor,
                std::span<ViewCounts> per_orientation) override;
+  /// Casts all cells: a few dozen views cover nearly all of them.
+  void look_from(const KnownSpace& space, const VoxelIndex& sensor) override;
+  /// Adds up the cells of these views alone.
+  void count(std::span<const std::size_t> which, std::span<ViewCounts> counts) override;
 
  private:
   static constexpr int kCells = 6 * kFaceSide * kFaceSide;
@@ -74,17 +78,21 @@ class PanoramaViewPredictor : public RasterViewPredictor {
   void cast_face(const FreeSpaceField& field, std::size_t face, const VoxelIndex& sensor);
   void look_up(const SurfaceTable& surfaces, std::size_t face);
   void append_view(const RayTable& rays, const Orientation& orientation);
-  static ViewCounts count(const Panorama& panorama, bool any_open, const WeightWord* begin,
-                          const WeightWord* end);
+  static ViewCounts count_cells(const Panorama& panorama, bool any_open, const WeightWord* begin,
+                                const WeightWord* end);
   void count_surfaces(const SurfaceTable& surfaces, const View& view, SurfaceCount& count,
                       ViewCounts& counts) const;
   bool any_is_open() const;
+  int threads() const { return static_cast<int>(surface_counts_.size()); }
 
   std::int64_t rays_per_view_;
   std::vector<RayBundle> faces_;
   std::vector<WeightWord> weights_;
   std::vector<View> views_;
-  Panorama panorama_;
+  std::vector<std::size_t> all_views_;
+  Panorama panorama_;                       // of the last look_from(), as are the next two
+  const SurfaceTable* surfaces_ = nullptr;  // null unless they are counted
+  bool any_open_ = false;
   std::vector<QuantisedDirection> directions_;  // by cell; for surface counts only
   std::vector<SurfaceCount> surface_counts_;    // by thread
 };

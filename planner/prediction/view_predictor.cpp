@@ -40,6 +40,22 @@ void ViewPredictor::predict_all(const KnownSpace& space, std::span<const VoxelIn
   }
 }
 
+void ViewPredictor::check_asked(std::size_t orientations, std::size_t counts) {
+  if (counts == orientations) return;
+  throw std::invalid_argument(std::to_string(counts) + " counts for " +
+                              std::to_string(orientations) + " orientations");
+}
+
+void ViewPredictor::look_from(const KnownSpace& space, const VoxelIndex& sensor) {
+  from_there_.resize(orientations().size());
+  predict(space, sensor, from_there_);
+}
+
+void ViewPredictor::count(std::span<const std::size_t> which, std::span<ViewCounts> counts) {
+  check_asked(which.size(), counts.size());
+  for (std::size_t i = 0; i < which.size(); ++i) counts[i] = from_there_.at(which[i]);
+}
+
 RasterViewPredictor::RasterViewPredictor(const PredictionRaster& raster, double voxel_size_m,
                                          std::vector<Orientation> orientations,
                                          bool counts_surfaces)
@@ -101,8 +117,20 @@ void PlainViewPredictor::predict(const KnownSpace& space, const VoxelIndex& sens
   const VoxelMap& map = space.map();
   check_arguments(map, sensor, per_orientation.size());
   for (std::size_t i = 0; i < per_orientation.size(); ++i) {
-    const auto rays = std::span<const Ray>(rays_).subspan(i * rays_per_view_, rays_per_view_);
-    per_orientation[i] = predict_view(map, sensor, rays);
+    per_orientation[i] = predict_view(map, sensor, rays_of_view(i));
+  }
+}
+
+void PlainViewPredictor::look_from(const KnownSpace& space, const VoxelIndex& sensor) {
+  check_arguments(space.map(), sensor, orientations().size());
+  map_ = &space.map();
+  sensor_ = sensor;
+}
+
+void PlainViewPredictor::count(std::span<const std::size_t> which, std::span<ViewCounts> counts) {
+  check_asked(which.size(), counts.size());
+  for (std::size_t i = 0; i < which.size(); ++i) {
+    counts[i] = predict_view(*map_, sensor_, rays_of_view(which[i]));
   }
 }
 

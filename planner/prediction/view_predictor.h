@@ -63,11 +63,23 @@ class ViewPredictor {
   virtual void predict_all(const KnownSpace& space, std::span<const VoxelIndex> sensors,
                            std::span<ViewCounts> counts);
 
+  /// The same for orientations that are named a few at a time: first the voxel, then the questions.
+  /// A predictor that can works out no more than is asked for; this one all of them.
+  /// The space must outlive the questions and not change meanwhile.
+  /// @throws what predict() does
+  virtual void look_from(const KnownSpace& space, const VoxelIndex& sensor);
+  /// Fills the counts of some orientations, by their places in orientations(), from where it was
+  /// looked from last.
+  /// @throws std::invalid_argument unless there are as many counts as orientations
+  virtual void count(std::span<const std::size_t> which, std::span<ViewCounts> counts);
+
  protected:
   ViewPredictor(std::vector<Orientation> orientations, bool counts_surfaces)
       : orientations_(std::move(orientations)), counts_surfaces_(counts_surfaces) {}
   /// Throws what predict_all() promises of the number of counts.
   void check_count(std::size_t sensors, std::size_t counts) const;
+  /// Throws what count() promises.
+  static void check_asked(std::size_t orientations, std::size_t counts);
 
   ViewPredictor(const ViewPredictor&) = default;
   ViewPredictor& operator=(const ViewPredictor&) = default;
@@ -75,6 +87,7 @@ class ViewPredictor {
  private:
   std::vector<Orientation> orientations_;
   bool counts_surfaces_;
+  std::vector<ViewCounts> from_there_;  // by orientation, of the last look_from()
 };
 
 /// A predictor that tabulates the rays of a raster for voxels of one size.
@@ -108,6 +121,8 @@ class PlainViewPredictor : public RasterViewPredictor {
 
   void predict(const KnownSpace& space, const VoxelIndex& sensor,
                std::span<ViewCounts> per_orientation) override;
+  void look_from(const KnownSpace& space, const VoxelIndex& sensor) override;
+  void count(std::span<const std::size_t> which, std::span<ViewCounts> counts) override;
 
  private:
   struct Ray {
@@ -124,8 +139,14 @@ class PlainViewPredictor : public RasterViewPredictor {
   ViewCounts predict_view(const VoxelMap& map, const VoxelIndex& sensor, std::span<const Ray> rays);
   void count_surfaces(const VoxelMap& map, ViewCounts& counts);
 
+  std::span<const Ray> rays_of_view(std::size_t orientation) const {
+    return std::span(rays_).subspan(orientation * rays_per_view_, rays_per_view_);
+  }
+
   std::size_t rays_per_view_;
-  std::vector<Ray> rays_;            // by orientation, then by pixel
+  std::vector<Ray> rays_;          // by orientation, then by pixel
+  const VoxelMap* map_ = nullptr;  // of the last look_from()
+  VoxelIndex sensor_ = VoxelIndex::Zero();
   std::vector<Sighting> sightings_;  // of the view at hand
 };
 

@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <stdexcept>
 
+#include "planner/prediction/selective_view_predictor.h"
 #include "planner/view_evaluator.h"
 
 namespace nextview {
@@ -148,6 +150,37 @@ TEST_F(Hall, AViewAloneIsWorthWhatItIsAmongAll) {
   EXPECT_GT(travel.turning, 0.0);
   EXPECT_GT(travel.length_m, 2.0 * 2.1) << "to the end of the wall and back";
   EXPECT_EQ(alone.factors[kNavigationFactor], navigation_factor(travel));
+}
+
+// At each of the positions tried the search among 80 directions finds no less than in the twenty.
+TEST_F(Hall, TheViewIsOneOfTheFinestWhereFacesAreRefined) {
+  const PredictionRaster raster = prediction_raster(TiltedLineScan::with_aperture(8, 4, 1.0), {});
+  const FaceRefinement& refinement = parameters.refinement.emplace(1);
+  SelectiveViewPredictor refined(raster, 0.1, refinement.orientations(), false);
+  const KnownSpace space(map);
+  const ClearSpace clear(map, parameters.feasibility);
+  for (int seed = 1; seed <= 5; ++seed) {
+    ShortestPaths paths;
+    paths.stand_at(clear, map, present.position_m, parameters.feasibility.departure_m);
+    const auto decision =
+        decide_by_simplex({space, present, seed, 2, 1, {}}, paths, refined, parameters);
+    ASSERT_TRUE(decision.has_value());
+    const Vector3d direction = viewing_direction(decision->pose.pan_rad, decision->pose.tilt_rad);
+    const auto nearest = std::ranges::max_element(
+        refinement.finest(), {},
+        [&](const Orientation& orientation) { return orientation.direction.dot(direction); });
+    EXPECT_NEAR(nearest->direction.dot(direction), 1.0, 1e-12);
+    PlainViewPredictor plain(raster, 0.1, {*nearest}, false);
+    std::vector<ViewCounts> counts(1);
+    plain.predict(space, map.grid().voxel_of(decision->pose.position_m), counts);
+    EXPECT_EQ(decision->fitness.value, fitness(counts[0]).value);
+    EXPECT_GT(decision->fitness.value, 0.5);
+  }
+}
+
+TEST_F(Hall, ARefinementWithOtherOrientationsThanThePredictorsIsRefused) {
+  parameters.refinement.emplace(1);
+  EXPECT_THROW(try_to_decide(1), std::invalid_argument);
 }
 
 TEST_F(Hall, LimitsAreKept) {

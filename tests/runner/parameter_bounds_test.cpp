@@ -501,7 +501,7 @@ TEST(ParameterBounds, AreAllInTheTable) {
 }
 
 TEST(ParameterBounds, TellHowManyDirectionsThereAre) {
-  for (const int directions : {20, 80, 320, 1280, 0, 19, 40, 5120}) {
+  for (const int directions : {20, 80, 320, 1280, 5120, 20480, 0, 19, 40, 81920}) {
     const bool there =
         std::ranges::find(bounds::kDirections, directions) != bounds::kDirections.end();
     run_config_t config = example<run_config_t>();

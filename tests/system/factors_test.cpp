@@ -75,6 +75,20 @@ TEST(Factors, CountInEveryDirection) {
   expect_replay_agrees(folder / "run");
 }
 
+TEST(Factors, CountWhereDirectionsAreRefined) {
+  const TemporaryFolder folder;
+  const Outcome run = run_views(folder / "run", 4,
+                                {"--strategy", "paper_refined", "--directions", "1280", "--quality",
+                                 "--structure-weight", "1", "--threads", "2"});
+  ASSERT_EQ(run.status, 0) << run.output;
+  for (const char* column : {"quality_factor", "structure_factor"}) {
+    double sum = 0.0;
+    for (const std::string& value : decided(folder / "run", column)) sum += std::stod(value);
+    EXPECT_GT(sum, 0.0) << column;
+  }
+  expect_replay_agrees(folder / "run");
+}
+
 TEST(Factors, AreRefusedByAnotherStrategy) {
   const TemporaryFolder folder;
   const Outcome run =
