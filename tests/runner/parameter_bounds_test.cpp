@@ -105,16 +105,16 @@ void sensor_with(const std::function<void(SensorModel&)>& change) {
 std::vector<Row> rows() {
   using namespace bounds;
   const auto sensor = [](double sensor_config_t::*field) {
-    return [field](run_config_t& m, double v) { m.sensor.*field = v; };
+    return [field = field](run_config_t& m, double v) { m.sensor.*field = v; };
   };
   const auto base = [](double base_config_t::*field) {
-    return [field](run_config_t& m, double v) { m.base.*field = v; };
+    return [field = field](run_config_t& m, double v) { m.base.*field = v; };
   };
   const auto planner = [](double planner_config_t::*field) {
-    return [field](run_config_t& m, double v) { m.planner.*field = v; };
+    return [field = field](run_config_t& m, double v) { m.planner.*field = v; };
   };
   const auto planner_int = [](std::int32_t planner_config_t::*field) {
-    return [field](run_config_t& m, double v) { m.planner.*field = static_cast<std::int32_t>(v); };
+    return [field = field](run_config_t& m, double v) { m.planner.*field = static_cast<std::int32_t>(v); };
   };
   const auto geometry = [](int kind, int parameter) {
     return [=](run_config_t& m, double v) {
@@ -353,11 +353,11 @@ std::vector<Row> rows() {
         std::tuple("--navigation-weight", &planner_config_t::navigation_weight,
                    kNavigationFactor)}) {
     add({"kFactorWeight", kFactorWeight, option,
-         [field](run_config_t& m, double v) {
+         [field = field](run_config_t& m, double v) {
            m.strategy = PaperStrategy::kFacts.name;
            m.planner.*field = v;
          },
-         [factor](double v) {
+         [factor = factor](double v) {
            checked<PlannerParameters>([=](auto& p) { p.weights[factor] = v; });
          }});
   }

@@ -17,6 +17,7 @@ Number number_at(const std::vector<std::uint8_t>& bytes, std::size_t at) {
 }  // namespace
 
 void PageModel::take(const Outbox::Message& message) {
+  ++messages;
   const std::vector<std::uint8_t>& sent = message.bytes;
   bytes += sent.size();
   if (!message.binary) {

@@ -38,6 +38,7 @@ class PageModel {
   std::uint32_t tried = 0;
   nlohmann::json next;
   std::uint32_t cad_vertices = 0;
+  std::int64_t messages = 0;
   std::size_t bytes = 0;  ///< of all messages
 
  private:

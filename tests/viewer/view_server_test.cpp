@@ -79,9 +79,9 @@ class ViewServerTest : public testing::Test {
   }
   /// Reads until the page holds a view in full.
   static void read_until(Socket& socket, PageModel& page, int view) {
-    for (int got = 1; page.view != view; ++got) {
+    while (page.view != view) {
       page.take(read(socket));
-      socket.write(asio::buffer(R"({"got": )" + std::to_string(got) + "}"));
+      socket.write(asio::buffer(R"({"got": )" + std::to_string(page.messages) + "}"));
     }
   }
 
