@@ -114,7 +114,9 @@ std::vector<Row> rows() {
     return [field = field](run_config_t& m, double v) { m.planner.*field = v; };
   };
   const auto planner_int = [](std::int32_t planner_config_t::*field) {
-    return [field = field](run_config_t& m, double v) { m.planner.*field = static_cast<std::int32_t>(v); };
+    return [field = field](run_config_t& m, double v) {
+      m.planner.*field = static_cast<std::int32_t>(v);
+    };
   };
   const auto geometry = [](int kind, int parameter) {
     return [=](run_config_t& m, double v) {
