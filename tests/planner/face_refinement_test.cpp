@@ -102,7 +102,8 @@ TEST(FaceRefinement, GoesStraightToTheBestOfAllThereIs) {
   EXPECT_EQ(best.fitness.value, kBest.value);
   std::vector<std::size_t> expected(20);
   for (std::size_t i = 0; i < 20; ++i) expected[i] = i;
-  for (const std::size_t part : {48, 49, 50, 51, 216, 217, 218, 219}) expected.push_back(part);
+  for (const std::size_t part : {48u, 49u, 50u, 51u, 216u, 217u, 218u, 219u})
+    expected.push_back(part);
   EXPECT_EQ(faces.tried, expected);
 }
 
