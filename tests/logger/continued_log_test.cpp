@@ -10,6 +10,7 @@
 #include "lcmtypes/decode.h"
 #include "logger/event_numbers.h"
 #include "logger/run_log.h"
+#include "tests/logger/append_to_log.h"
 #include "tests/logger/run_messages.h"
 
 namespace nextview {
@@ -21,13 +22,7 @@ class ContinuedLog : public testing::Test {
 
   template <class Message>
   void append(const Message& message) {
-    std::vector<std::uint8_t> bytes = encode(message);
-    lcm::LogEvent event;
-    event.channel = std::string(Channel<Message>::name);
-    event.timestamp = 0;
-    event.data = bytes.data();
-    event.datalen = static_cast<int>(bytes.size());
-    lcm::LogFile(file_.string(), "a").writeEvent(&event);
+    append_to_log(file_, message);
   }
   /// As a recorder does that is killed while it writes.
   template <class Message>

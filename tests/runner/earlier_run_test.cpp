@@ -4,11 +4,11 @@
 #include <unistd.h>
 
 #include <filesystem>
-#include <lcm/lcm-cpp.hpp>
 
 #include "lcmtypes/program_version.h"
 #include "planner/termination.h"
 #include "tests/lcmtypes/lossy_network.h"
+#include "tests/logger/append_to_log.h"
 #include "tests/logger/run_messages.h"
 
 namespace nextview {
@@ -21,13 +21,7 @@ class EarlierRunOf : public testing::Test {
 
   template <class Message>
   void append(const Message& message) {
-    std::vector<std::uint8_t> bytes = encode(message);
-    lcm::LogEvent event;
-    event.channel = std::string(Channel<Message>::name);
-    event.timestamp = 0;
-    event.data = bytes.data();
-    event.datalen = static_cast<int>(bytes.size());
-    lcm::LogFile(file_.string(), "a").writeEvent(&event);
+    append_to_log(file_, message);
   }
   std::string why_not() {
     try {
