@@ -21,23 +21,6 @@ const VoxelIndex kBehind(-27, -30, -25);  // from the sensor to the window's fir
 
 VoxelGrid quarter_metre_grid() { return {0.25, Eigen::Vector3d::Zero()}; }
 
-// A passage along an axis with things that stand in it.
-AnalyticWorld passage(int axis) {
-  AnalyticWorld world;
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(-2.5);
-  Eigen::Vector3d high = Eigen::Vector3d::Constant(2.5);
-  low[axis] = -5.0;
-  high[axis] = 105.0;
-  world.boxes.push_back({low, high});
-  for (int n = 0; n < 40; ++n) {
-    Eigen::Vector3d place = Eigen::Vector3d::Constant(n % 2 == 0 ? 1.6 : -1.7);
-    place[(axis + 1) % 3] *= n % 3 - 1;
-    place[axis] = 2.6 * n + 1.0;
-    world.spheres.push_back({place, 0.5});
-  }
-  return world;
-}
-
 bool is_hidden(Label label) { return label == Label::Occluded || label == Label::OcclusionPlane; }
 
 // Of what has been seen in a window: Empty and Occupied voxels, with their surface data. What is

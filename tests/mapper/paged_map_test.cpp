@@ -65,23 +65,6 @@ TEST(PagedMap, IsTheMapOfOneBufferOverRandomWorldsAndViews) {
   std::cout << views << " views, " << aside << " blocks aside after them\n";
 }
 
-// A passage along an axis with things that stand in it.
-AnalyticWorld passage(int axis) {
-  AnalyticWorld world;
-  Eigen::Vector3d low = Eigen::Vector3d::Constant(-2.5);
-  Eigen::Vector3d high = Eigen::Vector3d::Constant(2.5);
-  low[axis] = -5.0;
-  high[axis] = 105.0;
-  world.boxes.push_back({low, high});
-  for (int n = 0; n < 40; ++n) {
-    Eigen::Vector3d place = Eigen::Vector3d::Constant(n % 2 == 0 ? 1.6 : -1.7);
-    place[(axis + 1) % 3] *= n % 3 - 1;
-    place[axis] = 2.6 * n + 1.0;
-    world.spheres.push_back({place, 0.5});
-  }
-  return world;
-}
-
 class PagedMapAlong : public testing::TestWithParam<int> {};
 
 // There and back, so that everything it has left comes back.
