@@ -41,12 +41,12 @@ using InLibrary = std::function<void(double)>;  ///< throws std::invalid_argumen
 
 /// How a bound is reached.
 struct Row {
-  std::string name;    ///< of the constant in parameter_bounds.h
-  Bounds bounds;       ///< of what a message and a library are given
-  std::string option;  ///< empty: there is none
-  SetMessage message;  ///< empty: no message carries it
-  InLibrary library;   ///< empty: no library reads it
-  double typed = 1.0;  ///< of an option's unit there are so many in the message's
+  std::string name;      ///< of the constant in parameter_bounds.h
+  Bounds bounds;         ///< of what a message and a library are given
+  std::string option;    ///< empty: there is none
+  SetMessage message;    ///< empty: no message carries it
+  InLibrary in_library;  ///< empty: no library reads it
+  double typed = 1.0;    ///< of an option's unit there are so many in the message's
   /// Typed, with what must come before and after; the value where there is an @. What begins with =
   /// belongs to the word before it.
   std::vector<std::string> words = {"@"};
@@ -439,7 +439,7 @@ std::string refusal_of_message(const Row& row, double value) {
 
 std::string refusal_of_library(const Row& row, double value) {
   try {
-    row.library(value);
+    row.in_library(value);
   } catch (const std::invalid_argument& error) {
     return error.what();
   }
@@ -454,7 +454,7 @@ void expect_accepted(const Row& row, double value) {
   if (row.message) {
     EXPECT_EQ(refusal_of_message(row, value), "");
   }
-  if (row.library) {
+  if (row.in_library) {
     EXPECT_EQ(refusal_of_library(row, value), "");
   }
 }
@@ -468,7 +468,7 @@ void expect_refused(const Row& row, double value) {
   if (row.message) {
     EXPECT_NE(refusal_of_message(row, value), "");
   }
-  if (row.library) {
+  if (row.in_library) {
     EXPECT_NE(refusal_of_library(row, value), "");
   }
 }
