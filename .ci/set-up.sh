@@ -127,6 +127,18 @@ set_up_java() {
   build_target lcm_spy_types
 }
 
+# need_screen: before much is installed for a window that nobody could see.
+need_screen() {
+  [ -n "${DISPLAY-}" ] ||
+    fail "This opens a window, and there is no screen for one: DISPLAY is not set." \
+      "Type it on a desktop, or over ssh -X. Without a screen ./view shows a run in a browser."
+}
+
+# url_of_run: the LCM URL of a run in progress, if there is one.
+url_of_run() {
+  { pgrep --list-full lcm-logger || true; } | sed -n '/--lcm-url=/{s/.*--lcm-url=\([^ ]*\).*/\1/p;q}'
+}
+
 # start_java CLASS [ARGUMENT...]: a window of LCM. Debian's own scripts ask Java for an option it no longer has.
 start_java() {
   CLASSPATH="$build/nextview_types.jar" exec java -Djava.net.preferIPv4Stack=true -ea \

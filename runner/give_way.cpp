@@ -5,6 +5,6 @@
 
 namespace nextview {
 
-void give_way() { setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), 15); }
+void give_way() { setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kLookingOnNice); }
 
 }  // namespace nextview

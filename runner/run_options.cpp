@@ -12,6 +12,7 @@
 #include "lcmtypes/program_version.h"
 #include "planner/strategy_facts.h"
 #include "runner/bound_command.h"
+#include "runner/nearest_option.h"
 #include "runner/scene_file.h"
 #include "scene/mesh_file.h"
 
@@ -424,6 +425,18 @@ std::string data_folder(const std::string& name, const char* of_sources) {
   return fs::is_directory(installed) ? installed.string() : of_sources;
 }
 
+// What CLI11 says of a wrong command line, and which options may have been meant.
+std::string what_is_wrong(const CLI::App* app, const CLI::Error& error) {
+  std::string text = CLI::FailureMessage::simple(app, error);
+  for (const std::string& typed : app->remaining()) {
+    if (!typed.starts_with("--")) continue;
+    const std::string name = typed.substr(2, typed.find('=') - 2);
+    text += fmt::format("No option --{}; did you mean --{}?\n", name,
+                        nearest_option(*app, name, "help"));
+  }
+  return text;
+}
+
 }  // namespace
 
 const char* const kRunDescription =
@@ -456,6 +469,7 @@ std::optional<RunOptions> parse_run_options(int argc, char** argv, int& exit_sta
   const std::string program = std::filesystem::path(argv[0]).filename();
   app.set_version_flag("--version", program + " " + std::string(program_version()));
   app.get_formatter()->column_width(30);
+  app.failure_message(what_is_wrong);
   add_scene_options(app, options);
   add_run_options(app, options);
   add_sensor_options(app, options);

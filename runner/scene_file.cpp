@@ -4,10 +4,9 @@
 
 #include <toml++/toml.h>
 #include <CLI/CLI.hpp>
-#include <algorithm>
-#include <numeric>
 #include <vector>
 
+#include "runner/nearest_option.h"
 #include "scene/mesh_file.h"
 
 namespace nextview {
@@ -16,21 +15,6 @@ namespace {
 namespace fs = std::filesystem;
 constexpr const char* kModel = "model";
 constexpr const char* kSceneOption = "SCENE";
-
-// Levenshtein's distance: how many letters are to be changed, put in or taken out.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  std::iota(row.begin(), row.end(), std::size_t{0});
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t before = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t replaced = before + (a[i - 1] == b[j - 1] ? 0 : 1);
-      before = row[j];
-      row[j] = std::min({replaced, before + 1, row[j - 1] + 1});
-    }
-  }
-  return row.back();
-}
 
 class SceneFile {
  public:
@@ -76,8 +60,8 @@ class SceneFile {
   void take_option(const std::string& name, const toml::node& value) {
     CLI::Option* option = name == "scenes" ? nullptr : app_.get_option_no_throw("--" + name);
     if (option == nullptr) {
-      fail(value.source(),
-           fmt::format("no option '{}'; did you mean '{}'?", name, nearest_to(name)));
+      fail(value.source(), fmt::format("no option '{}'; did you mean '{}'?", name,
+                                       nearest_option(app_, name, kModel)));
     }
     if (option->count() == 0) set(*option, texts_of(name, value), value);
   }
@@ -107,16 +91,6 @@ class SceneFile {
     if (const auto number = value.value_exact<double>()) return fmt::format("{}", *number);
     if (const auto flag = value.value_exact<bool>()) return *flag ? "true" : "false";
     fail(value.source(), name + " must be a number, a text, true or false, or a list of them");
-  }
-
-  std::string nearest_to(const std::string& name) const {
-    std::string nearest = kModel;
-    for (const CLI::Option* option : app_.get_options()) {
-      for (const std::string& other : option->get_lnames()) {
-        if (edit_distance(name, other) < edit_distance(name, nearest)) nearest = other;
-      }
-    }
-    return nearest;
   }
 
   [[noreturn]] void fail(const toml::source_region& where, const std::string& why) const {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <system_error>
 
+#include "runner/give_way.h"
 #include "runner/run_setup.h"
 
 namespace nextview {
@@ -16,6 +17,7 @@ ChildProcess start(const std::string& lcm_url, std::int64_t run, bool paused) {
   try {
     ChildTerms terms;
     terms.at_death = AtParentsDeath::Terminate;
+    terms.nice_value = kLookingOnNice;
     return {ViewerProcess::kRole, command, terms};
   } catch (const std::system_error& error) {
     throw SetupError(std::string("--view: ") + error.what() +

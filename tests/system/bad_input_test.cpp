@@ -118,6 +118,8 @@ TEST(BadOption, IsNamed) {
   expect_wrong_command_line({"--max-evaluations", "3"}, "--max-evaluations");
   expect_wrong_command_line({"--quality-threshold", "1.5"}, "--quality-threshold");
   expect_wrong_command_line({"--no-such-option"}, "--no-such-option");
+  expect_wrong_command_line({"--sed", "3"}, "did you mean --seed?");
+  expect_wrong_command_line({"--stratgy=paper"}, "did you mean --strategy?");
 }
 
 TEST(BadOption, ThatContradictsAnotherIsNamed) {

@@ -145,6 +145,37 @@ test('the room, and a picture of depth that is not blank', async () => {
   await screenshot(page, 'desktop');
 });
 
+test('squares drawn on the processor look like the shader\'s', async () => {
+  const drawn = await page.evaluate(() => {
+    const [pane] = window.nextview.panes();
+    const picture = () => {
+      pane.renderer.render(pane.scene, pane.camera);
+      const gl = pane.renderer.getContext();
+      const pixels = new Uint8Array(4 * gl.drawingBufferWidth * gl.drawingBufferHeight);
+      gl.readPixels(0, 0, gl.drawingBufferWidth, gl.drawingBufferHeight, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      return pixels;
+    };
+    const differing = (a, b) => {
+      let count = 0;
+      for (let i = 0; i < a.length; i += 4) {
+        count += [0, 1, 2].some((channel) => Math.abs(a[i + channel] - b[i + channel]) > 12);
+      }
+      return count / (a.length / 4);
+    };
+    pane.render(false);
+    pane.draw_voxels(true);
+    const squares = picture();
+    pane.splats.object.visible = false;
+    const without = picture();
+    pane.voxels.draw_as('sprites');
+    pane.voxels.upload();
+    const sprites = picture();
+    return { of_twin: differing(squares, sprites), of_none: differing(squares, without) };
+  });
+  assert.ok(drawn.of_none > 0.2, `voxels in ${drawn.of_none} of the picture`);
+  assert.ok(drawn.of_twin < 0.02, `${drawn.of_twin} of the picture differs`);
+});
+
 test('layers, cut and colour change the picture', async () => {
   const drawn = () => page.evaluate(() => {
     const [pane] = window.nextview.panes();

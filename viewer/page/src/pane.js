@@ -2,6 +2,7 @@
 import * as THREE from 'three';
 import { OrbitControls } from 'three/addons/controls/OrbitControls.js';
 import { ramp } from './ramp.js';
+import { Splats } from './splats.js';
 import { Voxels } from './voxels.js';
 
 // Colours are as they are written here, in the voxels' shader as in three.js's own.
@@ -9,9 +10,11 @@ THREE.ColorManagement.enabled = false;
 
 const kPoseLength_m = 0.3;
 const kFrustumLength_m = 1.2;
-/// Above this many voxels a renderer in software draws sprites also when nothing moves: it takes some 20 us for
+/// Above this many voxels they are squares also at rest where the renderer is software, which takes some 20 us for
 /// each instance of a cube.
 const kSoftwareCubes = 40000;
+/// Below this many pixels a square looks like a cube.
+const kFarPixels = 3;
 
 const vector = (m) => new THREE.Vector3(m[0], m[1], m[2]);
 
@@ -75,6 +78,7 @@ export class Pane {
     this.controls.addEventListener('start', () => { this.dragged = true; });
     this.controls.addEventListener('end', () => { this.dragged = false; changed(); });
     this.voxels = new Voxels(this.renderer);
+    this.splats = new Splats(this.voxels);
     this.view = -1;
     this.rows = [];
     this.make_layers();
@@ -94,11 +98,12 @@ export class Pane {
         new THREE.MeshLambertMaterial({ color: 0x49c6e5, transparent: true, side: THREE.DoubleSide, flatShading: true,
           depthWrite: false })),
     };
-    this.scene.add(this.voxels.group, this.box, ...Object.values(this.layers), new THREE.HemisphereLight(0xffffff, 0x607080, 3));
+    this.scene.add(this.voxels.group, this.splats.object, this.box, ...Object.values(this.layers), new THREE.HemisphereLight(0xffffff, 0x607080, 3));
   }
 
   dispose() {
     this.controls.dispose();
+    this.splats.dispose();
     this.renderer.dispose();
     this.element.remove();
   }
@@ -243,7 +248,7 @@ export class Pane {
     const width = this.element.clientWidth;
     const height = this.element.clientHeight;
     if (width === 0 || height === 0) return;
-    const ratio = this.software ? (moving ? 0.75 : 1) : Math.min(2, window.devicePixelRatio);
+    const ratio = this.software ? 1 : Math.min(2, window.devicePixelRatio);
     if (this.width !== width || this.height !== height || this.ratio !== ratio) {
       Object.assign(this, { width, height, ratio });
       this.renderer.setPixelRatio(ratio);
@@ -251,10 +256,23 @@ export class Pane {
     }
     this.camera.aspect = width / height;
     this.camera.updateProjectionMatrix();
-    this.voxels.uniforms.pixels_a_radian.value = 0.5 * height * ratio * this.camera.projectionMatrix.elements[5];
-    this.voxels.draw_sprites(this.software && (moving || this.voxels.voxels > kSoftwareCubes));
-    this.voxels.upload();
+    this.draw_voxels(this.software && (moving || this.voxels.voxels > kSoftwareCubes));
     this.renderer.render(this.scene, this.camera);
+  }
+
+  draw_voxels(on_processor) {
+    this.splats.object.visible = on_processor;
+    if (on_processor) {
+      this.voxels.draw_as(null);
+      this.splats.draw(this.camera, this.canvas.width, this.canvas.height);
+      return;
+    }
+    const { voxel_size_m, pixels_a_radian } = this.voxels.uniforms;
+    pixels_a_radian.value = 0.5 * this.canvas.height * this.camera.projectionMatrix.elements[5];
+    const nearest_m = this.bounds ? this.bounds.distanceToPoint(this.camera.position) : 0;
+    const is_far = voxel_size_m.value * pixels_a_radian.value < kFarPixels * nearest_m;
+    this.voxels.draw_as(is_far ? 'sprites' : 'cubes');
+    this.voxels.upload();
   }
 
   /// All of the room, from outside and above.

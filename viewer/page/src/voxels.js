@@ -3,8 +3,9 @@
 // up in a texture.
 import * as THREE from 'three';
 import { ramp_glsl } from './ramp.js';
+import { glsl, kFaintOrder, kLabelColour, kLight, kLightFrom, kPlaneColour } from './shading.js';
 
-const kPlaneBit = 1 << 9;
+export const kPlaneBit = 1 << 9;
 const kBlockShift = 12;
 const kSegment = 16; // voxels; a block's room is a multiple of it
 const kTextureWidth = 1024;
@@ -56,15 +57,15 @@ ${cubes ? `
   gl_Position = projectionMatrix * viewMatrix * vec4(centre, 1.0);
   gl_PointSize = max(1.0, 1.3 * voxel_size_m * pixels_a_radian / gl_Position.w);
 `}
-  vec3 base = plane ? vec3(0.93, 0.53, 0.2)
-    : colour_is_quality ? ramp(float(bytes.w) / 255.0) : vec3(0.62, 0.72, 0.82);
+  vec3 base = plane ? ${glsl(kPlaneColour)}
+    : colour_is_quality ? ramp(float(bytes.w) / 255.0) : ${glsl(kLabelColour)};
   vec3 lit = bytes.xyz == ivec3(0) ? face : normalize(normal + 0.35 * face);
-  float light = 0.5 + 0.3 * max(0.0, dot(lit, vec3(0.36, 0.48, 0.8))) + 0.25 * abs(dot(lit, normalize(towards)));
-  if (lit == vec3(0.0)) light = 0.8;
+  float light = ${kLight.ambient} + ${kLight.from_above} * max(0.0, dot(lit, ${glsl(kLightFrom)}))
+    + ${kLight.from_eye} * abs(dot(lit, normalize(towards)));
+  if (lit == vec3(0.0)) light = ${kLight.without_normal};
   colour = base * light;
 }`;
 
-// What is faint is drawn in some of the pixels, so that nothing has to be sorted.
 const fragment_shader = `
 precision highp float;
 flat in vec3 colour;
@@ -72,7 +73,7 @@ flat in float alpha;
 out vec4 result;
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy) & 3;
-  const int kOrder[16] = int[](0, 8, 2, 10, 12, 4, 14, 6, 3, 11, 1, 9, 15, 7, 13, 5);
+  const int kOrder[16] = int[](${kFaintOrder.join(', ')});
   if (alpha < (float(kOrder[at.y * 4 + at.x]) + 0.5) / 16.0) discard;
   result = vec4(colour, 1.0);
 }`;
@@ -114,7 +115,7 @@ export class Voxels {
     this.cubes.frustumCulled = this.sprites.frustumCulled = false;
     this.group = new THREE.Group();
     this.group.add(this.cubes, this.sprites);
-    this.draw_sprites(false);
+    this.draw_as('cubes');
     this.clear();
   }
 
@@ -134,10 +135,10 @@ export class Voxels {
   get voxels() { return this.occupied + this.planes; }
   get bytes() { return this.words.byteLength; }
 
-  /// Sprites take a twelfth of a cube's work, and look like one from far off.
-  draw_sprites(on) {
-    this.cubes.visible = !on;
-    this.sprites.visible = on;
+  /// 'cubes', or 'sprites', which take a twelfth of the work and look like cubes from far off, or neither.
+  draw_as(what) {
+    this.cubes.visible = what === 'cubes';
+    this.sprites.visible = what === 'sprites';
   }
 
   /// body: blocks as outbox.h has them.
