@@ -221,6 +221,10 @@ void LogContents::check_seal(const seal_t& seal, std::size_t events_before,
   for (std::size_t i = 0; i < names.size(); ++i) {
     const std::string channel(names[i]);
     const std::int64_t sealed = seal.distinct_messages[i];
+    if (!is_known(channel)) {
+      faults.missing.push_back("what the seal says of " + channel +
+                               ", a channel that this version does not know");
+    }
     const Tally there = tally_of(channel);
     if (there.digest == digests[i] && there.distinct == sealed) continue;
     const std::string counts = std::to_string(sealed) + " messages on " + channel +

@@ -101,17 +101,18 @@ TEST(FieldChanges, OfASealedLogAreAllNoticed) {
       for (std::size_t i = 0; i < recording.size(); ++i) {
         if (recording[i].first != Channel<Message>::name) continue;
         Message message = *decode_checked<Message>(recording[i].second).message;
-        if (!change(get(message), Change::LastBit)) continue;
+        if (!is_to_be_changed(message) || !change(get(message), Change::LastBit)) continue;
         Recording tampered = recording;
         tampered[i].second = encode(message);
         const ReplayReport report = replay(log_of(tampered), {});
         const bool said = report.exit_status() != 0 || !report.sealed || !report.remarks.empty();
         EXPECT_TRUE(said) << Channel<Message>::name << " " << field << ", message " << i;
         ++changes;
+        if (!Channel<Message>::answered) break;  // they are alike, and many
       }
     });
   });
-  EXPECT_GT(changes, 400);
+  EXPECT_GT(changes, 200);
 }
 
 TEST(FieldChanges, AreNoticedOrSaidToBeUnchecked) {
