@@ -11,6 +11,7 @@
 #include <nextview/range_image_t.hpp>
 #include <nextview/request_t.hpp>
 #include <nextview/run_config_t.hpp>
+#include <nextview/seal_t.hpp>
 #include <nextview/search_t.hpp>
 #include <nextview/status_t.hpp>
 #include <nextview/stop_t.hpp>
@@ -31,7 +32,7 @@ struct TypeList {
 /// Every type of message. Whoever handles all of them goes by this list: for_each_channel, the
 /// encoder, the tests of every type. A test holds it against the .lcm files of this folder.
 using AllMessages = TypeList<run_config_t, goal_t, search_t, arrival_t, range_image_t, commit_t,
-                             stop_t, status_t, request_t, timing_t, map_blocks_t, pace_t>;
+                             stop_t, status_t, request_t, timing_t, map_blocks_t, pace_t, seal_t>;
 
 /// What tells the messages of one channel of one run apart.
 struct MessageKey {
@@ -167,6 +168,15 @@ struct Channel<pace_t> {
   static constexpr bool answered = false;
   static constexpr channel_detail::NoLengths lengths = {};
   static constexpr int strings = 0;
+};
+
+/// Never published: the run writes it into its log.
+template <>
+struct Channel<seal_t> {
+  static constexpr std::string_view name = "NEXTVIEW_SEAL";
+  static constexpr bool answered = false;
+  static constexpr std::array<LengthField, 1> lengths = {{{channel_detail::kFirstLength, 8}}};
+  static constexpr int strings = 3;
 };
 
 namespace channel_detail {

@@ -267,6 +267,23 @@ std::string check(const pace_t& pace) {
   return checks.reason();
 }
 
+std::string check(const seal_t& seal) {
+  Checks checks;
+  checks.not_negative("utime", static_cast<double>(seal.utime));
+  const auto channels = static_cast<std::size_t>(seal.sealed_channels);
+  const std::vector<std::string_view> names = names_of(seal.channel_names);
+  const std::vector<std::string_view> digests = names_of(seal.channel_digests);
+  checks.require(names.size() == channels && digests.size() == channels,
+                 fmt::format("{} names and {} digests for {} channels", names.size(),
+                             digests.size(), channels));
+  for (const std::int64_t messages : seal.distinct_messages) {
+    checks.require(messages >= 0, fmt::format("count {}", messages));
+  }
+  for (const std::string_view digest : digests) checks.digest("channel_digests", digest);
+  checks.digest("times_digest", seal.times_digest);
+  return checks.reason();
+}
+
 std::vector<std::string_view> names_of(std::string_view list) {
   std::vector<std::string_view> names;
   if (list.empty()) return names;

@@ -16,13 +16,23 @@ class LogError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };
 
-/// A message as it was logged. The time it was received at is left out: nothing depends on it.
+/// A message as it was logged.
 struct LoggedMessage {
-  std::string channel;
+  std::string channel;  ///< any bytes, and none at all where somebody has sent such a thing
   std::vector<std::uint8_t> bytes;
+  std::uint64_t number = 0;      ///< of the event, by whoever has recorded it
+  std::int64_t received_us = 0;  ///< by the recorder's clock; nothing of a run depends on it
 };
 
-/// Reads an LCM log message by message, also while the recorder is still writing it.
+/// Bytes of a log in which no whole event stands.
+struct DamagedBytes {
+  std::int64_t position = 0;
+  std::int64_t bytes = 0;
+};
+
+/// Reads an LCM log message by message, also while the recorder is still writing it. Reads on past
+/// what is damaged: at the next event that is whole, found by LCM's sync word. Whatever a length
+/// says, no more is allocated than there is.
 class LogReader {
  public:
   /// @throws LogError when there is no such file or it cannot be opened
@@ -31,6 +41,8 @@ class LogReader {
   LogReader(LogReader&&) noexcept;
   LogReader& operator=(LogReader&&) noexcept;
 
+  const std::filesystem::path& file() const;
+
   /// The next message; nothing at the end, where it may be called again when the file has grown.
   std::optional<LoggedMessage> next();
 
@@ -38,6 +50,9 @@ class LogReader {
   std::int64_t position() const;
   /// Goes there, to where a message ends.
   void seek(std::int64_t position);
+
+  /// What next() has gone past, in order.
+  const std::vector<DamagedBytes>& damaged() const;
 
   /// Bytes behind the last message read: a message being written, a log that was cut off, or
   /// something that is no log.
@@ -48,7 +63,7 @@ class LogReader {
   void cut_rest();
 
  private:
-  struct File;  // hides LCM's headers
+  struct File;
   std::unique_ptr<File> file_;
 };
 

@@ -302,6 +302,18 @@ struct MessageFields<pace_t> {
                                       NamedField{"holds_s", &M::holds_s}};
 };
 
+template <>
+struct MessageFields<seal_t> {
+  using M = seal_t;
+  static constexpr std::tuple list = {NamedField{"utime", &M::utime},
+                                      NamedField{"sealed_channels", &M::sealed_channels},
+                                      NamedField{"run", &M::run},
+                                      NamedField{"distinct_messages", &M::distinct_messages},
+                                      NamedField{"channel_names", &M::channel_names},
+                                      NamedField{"channel_digests", &M::channel_digests},
+                                      NamedField{"times_digest", &M::times_digest}};
+};
+
 namespace message_fields_detail {
 template <class T>
 concept HasFields = requires {

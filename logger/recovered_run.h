@@ -33,4 +33,9 @@ RecoveredRun recover_run(const std::filesystem::path& folder_or_log,
 /// @throws LogError when there is neither
 std::filesystem::path log_file_of(const std::filesystem::path& folder_or_log);
 
+/// The files of that log in the order in which they were recorded: itself, or where there is none
+/// the parts that lcm-logger has left with --rotate (NAME.0 is the latest) or -i (NAME.00 is the
+/// first).
+std::vector<std::filesystem::path> log_files_of(const std::filesystem::path& folder_or_log);
+
 }  // namespace nextview

@@ -37,6 +37,7 @@ class Replay {
     report_.differences = log_.contradictions();
     report_.remarks = log_.later_ends();
     if (record_.stop()) report_.stop_reason = record_.stop()->stop_reason;
+    check_file();
     check_run_config();
     const int views = record_.views_taken();
     for (int view = 1; view <= views; ++view) replay_view(view);
@@ -68,6 +69,23 @@ class Replay {
     if (fields.empty()) return true;
     report_.differences.push_back(describe(name) + " differs in " + joined(fields));
     return false;
+  }
+
+  /// The log as a file, whatever its messages say.
+  void check_file() {
+    const LogFaults faults = log_.contents().faults(
+        config_.run, record_.stop() ? std::optional(record_.stop()->utime) : std::nullopt);
+    const auto take_in = [](std::vector<std::string>& lines, const std::vector<std::string>& more) {
+      lines.insert(lines.end(), more.begin(), more.end());
+    };
+    take_in(report_.differences, faults.differences);
+    take_in(report_.missing, faults.missing);
+    take_in(report_.remarks, faults.remarks);
+    report_.sealed = faults.sealed;
+    if (const std::int64_t others = log_.counters().of_other_runs; others > 0) {
+      report_.remarks.push_back("there are also " + std::to_string(others) +
+                                " messages of other runs");
+    }
   }
 
   void check_run_config() {

@@ -19,6 +19,7 @@ struct ReplayReport {
   std::vector<std::string> differences;  ///< what the log says and is not so, one line each
   std::vector<std::string> missing;      ///< what the log lacks, so that less could be checked
   std::vector<std::string> remarks;      ///< what else there is, and is no fault
+  bool sealed = false;                   ///< the log bears its seal (seal_t)
 
   /// 0 when all of it agrees, 1 when something differs, 3 when what is there agrees and something
   /// is missing. A log without a view has nothing to agree to.

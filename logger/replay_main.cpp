@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <utility>
 
 #include "lcmtypes/program_version.h"
 #include "logger/recovered_run.h"
@@ -21,22 +22,47 @@ void show(std::ostream& to, const std::string& what, const std::vector<std::stri
   }
 }
 
-void show_unchecked(const std::vector<nextview::UncheckedFields>& unchecked) {
-  std::cout << "taken as it is:\n";
+/// What there is, channel by channel.
+void show_events(const nextview::RunLog& log) {
+  std::cout << log.contents().events() << " events:";
+  const char* separator = " ";
+  for (const auto& [channel, events] : log.contents().events_on()) {
+    std::cout << std::exchange(separator, ", ") << events << " "
+              << (channel.empty() ? "without a channel" : channel);
+  }
+  std::cout << "; " << log.counters().repeated << " repeated\n";
+}
+
+void show_unchecked(const std::vector<nextview::UncheckedFields>& unchecked,
+                    const nextview::ReplayReport& report) {
+  if (!report.sealed) {
+    std::cout << "not checked, as the log bears no seal:\n";
+  } else if (report.exit_status() == 0) {
+    std::cout << "not worked out again, but what it was when the log was sealed:\n";
+  } else {
+    std::cout << "not worked out again:\n";
+  }
   for (const nextview::UncheckedFields& some : unchecked) {
     std::cout << "  " << some.channel << " (" << some.why << "):";
     for (const std::string& field : some.fields) {
-      std::cout << " " << (field == "*" ? "all of it" : field);
+      std::cout << " " << field;
     }
     std::cout << "\n";
   }
 }
 
-int replay_run(const std::string& argument, std::optional<std::int64_t> run,
+std::vector<std::filesystem::path> files_of(const std::vector<std::string>& arguments) {
+  if (arguments.size() == 1) return nextview::log_files_of(arguments.front());
+  return {arguments.begin(), arguments.end()};
+}
+
+int replay_run(const std::vector<std::string>& arguments, std::optional<std::int64_t> run,
                const nextview::ReplayOptions& options) {
-  const std::filesystem::path file = nextview::log_file_of(argument);
-  nextview::RunLog log(file, run, nextview::RangeImages::Keep);
+  const std::vector<std::filesystem::path> files = files_of(arguments);
+  const std::filesystem::path& file = files.front();
+  nextview::RunLog log(files, run, nextview::RangeImages::Keep);
   log.read_on();
+  show_events(log);
   show(std::cerr, "left out: ", log.dropped());
   if (!run && !log.other_runs().empty()) {
     std::cerr << "the log holds other runs, too; name one by --run to replay it:";
@@ -56,7 +82,7 @@ int replay_run(const std::string& argument, std::optional<std::int64_t> run,
   }
   std::cout << " (" << (report.stop_reason.empty() ? "no end" : report.stop_reason) << ")\n";
   if (log.record().config()) {
-    show_unchecked(nextview::unchecked_fields(log.record(), options.planner));
+    show_unchecked(nextview::unchecked_fields(log.record(), options.planner), report);
   }
   std::cout << std::flush;
   return report.exit_status();
@@ -70,10 +96,13 @@ int main(int argc, char** argv) {
       "that the log says of maps, poses, paths, times and the run's end, bit for bit. Says what "
       "it\n"
       "cannot check. Reads no CAD file and needs no bus.\n"};
-  std::string folder;
+  std::vector<std::string> folders;
   std::optional<std::int64_t> run;
   nextview::ReplayOptions options;
-  app.add_option("DIR", folder, "Folder of a run, or an LCM log")->required();
+  app.add_option("DIR", folders,
+                 "Folder of a run, or an LCM log; several files: of one log that was split, in the "
+                 "order in which they were recorded")
+      ->required();
   app.add_flag("--planner", options.planner,
                "Decide every goal again, too, and compare pose, path, fitness and search exactly");
   app.add_option("--run", run, "The run to replay, when the log holds several");
@@ -84,7 +113,7 @@ int main(int argc, char** argv) {
       "differs, with its fields, or is missing.");
   CLI11_PARSE(app, argc, argv);
   try {
-    return replay_run(folder, run, options);
+    return replay_run(folders, run, options);
   } catch (const std::exception& error) {
     std::cerr << "nextview_replay: " << error.what() << std::endl;
     return 1;

@@ -11,11 +11,39 @@ namespace nextview {
 
 RunLog::RunLog(const std::filesystem::path& file, std::optional<std::int64_t> run,
                RangeImages range_images)
-    : reader_(file), run_(run), record_(range_images) {}
+    : RunLog(std::vector{file}, run, range_images) {}
+
+RunLog::RunLog(const std::vector<std::filesystem::path>& files, std::optional<std::int64_t> run,
+               RangeImages range_images)
+    : run_(run), record_(range_images) {
+  for (const std::filesystem::path& file : files) readers_.emplace_back(file);
+}
+
+std::optional<LoggedMessage> RunLog::next() {
+  for (;;) {
+    auto message = readers_[reading_].next();
+    note_damage();
+    if (message || reading_ + 1 == readers_.size()) return message;
+    const LogReader& ended = readers_[reading_];
+    if (ended.bytes_left() > 0) {
+      contents_.add_damage(ended.file().string(), {ended.position(), ended.bytes_left()});
+    }
+    ++reading_;
+    damage_noted_ = 0;
+  }
+}
+
+void RunLog::note_damage() {
+  const LogReader& reader = readers_[reading_];
+  for (; damage_noted_ < reader.damaged().size(); ++damage_noted_) {
+    contents_.add_damage(reader.file().string(), reader.damaged()[damage_noted_]);
+  }
+}
 
 void RunLog::read_on() {
-  while (auto message = reader_.next()) {
+  while (auto message = next()) {
     ++counters_.messages;
+    contents_.add(*message);
     if (!run_ && message->channel != Channel<run_config_t>::name) {
       before_config_.push_back(std::move(*message));
       continue;
@@ -53,6 +81,7 @@ void RunLog::take_as(const LoggedMessage& message) {
   }
   if (decoded.message->run != *run_) {
     ++counters_.foreign;
+    ++counters_.of_other_runs;
     return;
   }
   ++counters_.ours;

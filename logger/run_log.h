@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "lcmtypes/channels.h"
+#include "logger/log_contents.h"
 #include "logger/log_reader.h"
 #include "logger/run_record.h"
 
@@ -18,10 +19,11 @@ namespace nextview {
 
 /// What was found in a log.
 struct LogCounters {
-  std::int64_t messages = 0;  ///< in all
-  std::int64_t ours = 0;      ///< of the run
-  std::int64_t foreign = 0;   ///< of other runs, or on channels that are not ours
-  std::int64_t repeated = 0;  ///< the same again, which is how lost messages are made good
+  std::int64_t messages = 0;       ///< in all
+  std::int64_t ours = 0;           ///< of the run
+  std::int64_t foreign = 0;        ///< of other runs, or on channels that are not ours
+  std::int64_t of_other_runs = 0;  ///< of the foreign ones, on channels that are ours
+  std::int64_t repeated = 0;       ///< the same again, which is how lost messages are made good
 };
 
 /// Reads the messages of one run out of its log, through the same decode-and-validate path as the
@@ -32,6 +34,12 @@ class RunLog {
   /// @throws LogError when the file cannot be opened
   RunLog(const std::filesystem::path& file, std::optional<std::int64_t> run,
          RangeImages range_images);
+  /// @param files of a log that was split or rotated, in the order in which they were recorded
+  RunLog(const std::vector<std::filesystem::path>& files, std::optional<std::int64_t> run,
+         RangeImages range_images);
+
+  /// The file, or the last of several.
+  const std::filesystem::path& file() const { return readers_.back().file(); }
 
   /// Takes in what has been written since the last call.
   void read_on();
@@ -39,6 +47,8 @@ class RunLog {
   const RunRecord& record() const { return record_; }
   RunRecord& record() { return record_; }
   const LogCounters& counters() const { return counters_; }
+  /// What the log holds as a file.
+  const LogContents& contents() const { return contents_; }
   /// The other runs whose configurations are in the log.
   const std::vector<std::int64_t>& other_runs() const { return other_runs_; }
   /// Messages that cannot be right and were left out, as everybody on the bus does, one line each.
@@ -48,19 +58,24 @@ class RunLog {
   /// Ends of the run after the first one, which counts, one line each.
   const std::vector<std::string>& later_ends() const { return later_ends_; }
   /// Bytes at the end that are no whole message.
-  std::int64_t bytes_left() const { return reader_.bytes_left(); }
+  std::int64_t bytes_left() const { return readers_.back().bytes_left(); }
   /// Cuts them off; see LogReader.
-  void cut_rest() { reader_.cut_rest(); }
+  void cut_rest() { readers_.back().cut_rest(); }
 
  private:
   /// 128-bit hash of a message's bytes.
   using Hash = std::pair<std::uint64_t, std::uint64_t>;
 
+  std::optional<LoggedMessage> next();
+  void note_damage();
   void take(const LoggedMessage& message);
   template <class Message>
   void take_as(const LoggedMessage& message);
 
-  LogReader reader_;
+  std::vector<LogReader> readers_;  // one a file
+  std::size_t reading_ = 0;         // of them
+  std::size_t damage_noted_ = 0;    // of the one that is being read
+  LogContents contents_;
   std::optional<std::int64_t> run_;
   RunRecord record_;
   LogCounters counters_;

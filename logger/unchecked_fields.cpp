@@ -3,8 +3,36 @@
 #include <algorithm>
 
 #include "logger/expected_message.h"
+#include "logger/message_fields.h"
 
 namespace nextview {
+namespace {
+
+/// What a replay looks at; of these the fields that it does not check are named below.
+using LookedAt =
+    TypeList<run_config_t, goal_t, search_t, arrival_t, range_image_t, commit_t, stop_t, seal_t>;
+
+template <class Message, class... Messages>
+constexpr bool is_among(TypeList<Messages...>) {
+  return (std::is_same_v<Message, Messages> || ...);
+}
+
+template <class Message>
+std::vector<std::string> all_fields() {
+  std::vector<std::string> fields;
+  for_each_field<Message>([&](const std::string& field, const auto&) { fields.push_back(field); });
+  return fields;
+}
+
+template <class Message>
+std::string_view why_not_looked_at() {
+  if constexpr (std::is_same_v<Message, map_blocks_t>) {
+    return "for others that follow the map, whose digest is in the commits";
+  }
+  return "for people, or of the moment";
+}
+
+}  // namespace
 
 std::vector<UncheckedFields> unchecked_fields(const RunRecord& run, bool planner) {
   constexpr std::string_view kConfig = Channel<run_config_t>::name;
@@ -16,13 +44,6 @@ std::vector<UncheckedFields> unchecked_fields(const RunRecord& run, bool planner
                                                   "believed_tilt_rad"};
   constexpr std::string_view kForPeople = "for people, or of the moment";
   std::vector<UncheckedFields> unchecked = {
-      {kForPeople, Channel<timing_t>::name, {"*"}},
-      {kForPeople, Channel<status_t>::name, {"*"}},
-      {kForPeople, Channel<request_t>::name, {"*"}},
-      {"for others that follow the map, whose digest is in the commits",
-       Channel<map_blocks_t>::name,
-       {"*"}},
-      {kForPeople, Channel<pace_t>::name, {"*"}},
       {kForPeople, kConfig, {"scene_name", "program_version", "planner.threads"}},
       {"only the scene could tell, which a replay does not read",
        kConfig,
@@ -46,6 +67,12 @@ std::vector<UncheckedFields> unchecked_fields(const RunRecord& run, bool planner
        kConfig,
        {"map.window_min", "map.window_size"}},
   };
+  for_each_channel([&]<class Message>() {
+    if constexpr (!is_among<Message>(LookedAt{})) {
+      unchecked.push_back(
+          {why_not_looked_at<Message>(), Channel<Message>::name, all_fields<Message>()});
+    }
+  });
   if (run.ends_early()) {
     unchecked.push_back(
         {"why a run ended early, it says itself", kStop, {"stop_reason", "detail"}});
@@ -103,7 +130,7 @@ bool is_unchecked(std::span<const UncheckedFields> unchecked, std::string_view c
   return std::any_of(unchecked.begin(), unchecked.end(), [&](const UncheckedFields& some) {
     return some.channel == channel &&
            std::any_of(some.fields.begin(), some.fields.end(),
-                       [&](const std::string& name) { return name == "*" || name == field; });
+                       [&](const std::string& name) { return name == field; });
   });
 }
 

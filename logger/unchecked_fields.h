@@ -13,10 +13,12 @@ namespace nextview {
 struct UncheckedFields {
   std::string_view why;
   std::string_view channel;
-  std::vector<std::string> fields;  ///< by the names of message_fields.h; "*": all of them
+  std::vector<std::string> fields;  ///< by the names of message_fields.h
 };
 
-/// What a replay of a run leaves unchecked.
+/// What a replay of a run leaves unchecked: neither compared nor worked out again. Whether it is
+/// what was recorded only the log's seal tells. A type of message that a replay does not look at is
+/// among them with all its fields, without being named here.
 /// @param run with its configuration
 /// @param planner whether it decides every goal again
 std::vector<UncheckedFields> unchecked_fields(const RunRecord& run, bool planner);

@@ -16,6 +16,7 @@
 #include "base_sim/base.h"
 #include "lcmtypes/ask_timer.h"
 #include "logger/event_numbers.h"
+#include "logger/seal_log.h"
 #include "runner/disk_room.h"
 #include "runner/give_way.h"
 #include "runner/log_completion.h"
@@ -318,6 +319,7 @@ void RunSupervisor::put_log_in_order() {
   try {
     log_->read_on();
     if (log_->bytes_left() <= kLongestEvent) log_->cut_rest();
+    seal_log(*log_);
     if (!recorder_began_anew_) return;
     number_events(files_.log);
     for (const std::string& what : log_->contradictions()) {
@@ -337,6 +339,8 @@ void RunSupervisor::end_processes(FinishedRun& run) {
       for (const std::string& line : lines) progress_.say(line);
     }
     run.peak_memory_bytes = processes_->peak_memory_bytes();
+  } else {
+    put_log_in_order();  // of an earlier run, that may have been killed before it did
   }
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);

@@ -216,4 +216,16 @@ pace_t example() {
   return pace;
 }
 
+template <>
+seal_t example() {
+  seal_t seal{};
+  seal.run = 7;
+  seal.sealed_channels = 2;
+  seal.distinct_messages = {3, 0};
+  seal.channel_names = "NEXTVIEW_GOAL,NEXTVIEW_STOP"s;
+  seal.channel_digests = "00112233445566778899aabbccddeeff,99aa06d3014798d86001c324468d497f"s;
+  seal.times_digest = "0123456789abcdef0123456789abcdef"s;
+  return seal;
+}
+
 }  // namespace nextview

@@ -32,5 +32,7 @@ template <>
 map_blocks_t example();
 template <>
 pace_t example();
+template <>
+seal_t example();
 
 }  // namespace nextview

@@ -281,6 +281,17 @@ TEST(Validate, Paces) {
   });
 }
 
+TEST(Validate, Seals) {
+  expect_all_refused<seal_t>({
+      {"a negative time", [](seal_t& m) { m.utime = -1; }},
+      {"fewer names than channels", [](seal_t& m) { m.channel_names = "NEXTVIEW_GOAL"; }},
+      {"fewer digests than channels", [](seal_t& m) { m.channel_digests.clear(); }},
+      {"a negative count", [](seal_t& m) { m.distinct_messages[0] = -1; }},
+      {"a digest of a channel that is none", [](seal_t& m) { m.channel_digests[0] = 'x'; }},
+      {"a digest of times that is none", [](seal_t& m) { m.times_digest = "0"; }},
+  });
+}
+
 TEST(Validate, NamesOfAList) {
   EXPECT_EQ(names_of(""), std::vector<std::string_view>{});
   EXPECT_EQ(names_of("a"), std::vector<std::string_view>{"a"});

@@ -124,4 +124,11 @@ RunLog log_of(const Recording& recording) {
   return log;
 }
 
+Recording sealed(Recording recording) {
+  const RunLog log = log_of(recording);
+  const stop_t& stop = log.record().stop().value();
+  recording.emplace_back(Channel<seal_t>::name, encode(log.contents().seal(stop.run, stop.utime)));
+  return recording;
+}
+
 }  // namespace nextview

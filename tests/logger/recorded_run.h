@@ -24,6 +24,9 @@ Recording with_driver_for(const std::string& role, const Recording& recording);
 /// The log of a recording, read to its end.
 RunLog log_of(const Recording& recording);
 
+/// The recording with the seal that its run puts behind it.
+Recording sealed(Recording recording);
+
 /// The recording with every message of a type as `change` leaves it.
 template <class Message>
 Recording changed(Recording recording, const std::function<void(Message&)>& change) {

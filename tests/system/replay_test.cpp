@@ -2,6 +2,7 @@
 
 #include <fstream>
 #include <functional>
+#include <iterator>
 #include <lcm/lcm-cpp.hpp>
 
 #include "lcmtypes/decode.h"
@@ -114,14 +115,68 @@ TEST_F(RecordedRun, AMessageLeftOutIsFound) {
 
 TEST_F(RecordedRun, AGoalThatWasChangedIsFoundByThePlanner) {
   const auto folder = edited<goal_t>(5, [](goal_t& goal) { goal.fitness += 1e-9; });
+  // The map does not depend on it; the seal of the log knows.
   const Outcome without_planner = replay_folder(folder);
-  EXPECT_EQ(without_planner.status, 0) << "the map does not depend on it";
+  EXPECT_EQ(without_planner.status, 1);
+  EXPECT_NE(without_planner.output.find("messages on NEXTVIEW_GOAL were sealed"), std::string::npos)
+      << without_planner.output;
   EXPECT_NE(without_planner.output.find(
                 "NEXTVIEW_GOAL (decided again with --planner only): waypoints factors fitness"),
             std::string::npos)
       << without_planner.output;
   expect_disagreement(replay_folder(folder, {"--planner"}),
                       "NEXTVIEW_GOAL of view 5, attempt 1 differs in fitness");
+}
+
+TEST_F(RecordedRun, WhatNothingDependsOnIsFoundByTheSeal) {
+  bool changed = false;
+  const auto folder = tampered([&](const lcm::LogEvent& event, const Bytes& bytes) {
+    if (event.channel != Channel<timing_t>::name || std::exchange(changed, true)) {
+      return Instead{bytes};
+    }
+    timing_t timing = *decode_checked<timing_t>(bytes).message;
+    timing.duration_s.back() += 1.0;
+    return Instead{encode(timing)};
+  });
+  expect_disagreement(replay_folder(folder), "messages on NEXTVIEW_TIMING were sealed");
+}
+
+TEST_F(RecordedRun, AMessageThatNobodyMissesIsMissedByTheSeal) {
+  bool left_out = false;
+  const auto folder = tampered([&](const lcm::LogEvent& event, const Bytes& bytes) {
+    if (event.channel != Channel<timing_t>::name || std::exchange(left_out, true)) {
+      return Instead{bytes};
+    }
+    return Instead{};
+  });
+  expect_lack(replay_folder(folder), "messages on NEXTVIEW_TIMING were sealed");
+}
+
+TEST_F(RecordedRun, IsReplayedInTheFilesItWasSplitInto) {
+  const auto log = folder_ / "run" / "run.lcmlog";
+  std::ifstream in(log, std::ios::binary);
+  const std::string bytes((std::istreambuf_iterator<char>(in)), {});
+  // Where an event ends: before the sync word of the next.
+  const std::string sync_word("\xED\xA1\xDA\x01", 4);
+  const std::size_t first = bytes.find(sync_word, bytes.size() / 3);
+  const std::size_t second = bytes.find(sync_word, 2 * bytes.size() / 3);
+  const std::vector<std::string> parts = {
+      bytes.substr(0, first), bytes.substr(first, second - first), bytes.substr(second)};
+  const auto write_as = [&](const std::vector<std::string>& names) {
+    const auto folder = folder_ / names.front();
+    std::filesystem::create_directories(folder);
+    for (std::size_t i = 0; i < parts.size(); ++i) {
+      std::ofstream(folder / names[i], std::ios::binary) << parts[i];
+    }
+    return folder;
+  };
+  // Counted up, as by lcm-logger -i; and rotated, where the latest has the lowest number.
+  EXPECT_EQ(replay_folder(write_as({"run.lcmlog.00", "run.lcmlog.01", "run.lcmlog.02"})).status, 0);
+  const auto rotated = write_as({"run.lcmlog.2", "run.lcmlog.1", "run.lcmlog.0"});
+  const Outcome replay = replay_folder(rotated);
+  EXPECT_EQ(replay.status, 0) << replay.output;
+  std::filesystem::remove(rotated / "run.lcmlog.1");
+  expect_lack(replay_folder(rotated), "by its numbers");
 }
 
 TEST_F(RecordedRun, TwoMessagesThatContradictEachOtherAreFound) {
