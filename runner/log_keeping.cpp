@@ -51,8 +51,15 @@ void LogKeeping::settle(RunLog& log, Bus& bus, HeardRun& heard) {
   bus.publish(recorded);
 }
 
+bool LogKeeping::take_from_log(const MissingMessage& missing, HeardRun& heard) {
+  if (!answers_ || !answers_->has(missing.view)) return false;
+  answers_->tell(missing.channel, missing.view, missing.attempt, heard.record.config()->run,
+                 [&heard](const auto& message) { heard.take(message); });
+  return true;
+}
+
 bool LogKeeping::answer(Bus& bus, const request_t& request) {
-  if (!answers_ || request.view < 1 || request.view > answers_->views()) return false;
+  if (!answers_ || !answers_->has(request.view)) return false;
   answers_->answer(bus, request);
   return true;
 }

@@ -18,6 +18,9 @@ class LogKeeping {
  public:
   /// Looks at the log, if it is time; to be called often.
   void step(RunLog& log, Bus& bus, HeardRun& heard);
+  /// Has what was missed here, and is of a view that this answers for, come out of the log; false
+  /// when it is of another.
+  bool take_from_log(const MissingMessage& missing, HeardRun& heard);
   /// Answers a request for a view that it answers for; false for another.
   bool answer(Bus& bus, const request_t& request);
 

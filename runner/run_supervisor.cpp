@@ -266,6 +266,7 @@ void RunSupervisor::ask_for_missed() {
   // makes good.
   std::set<MissingMessage> missed;
   for (const MissingMessage& missing : heard_.record.missing()) {
+    if (log_keeping_.take_from_log(missing, heard_)) continue;
     if (missed_.contains(missing)) request(*bus_, missing, heard_.record);
     missed.insert(missing);
   }
