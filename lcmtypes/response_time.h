@@ -1,47 +1,38 @@
 #pragma once
 
-#include <algorithm>
+#include <array>
 #include <chrono>
-#include <cmath>
-#include <optional>
+#include <cstddef>
 
 namespace nextview {
 
 /// How long it takes until what is waited for comes, and with that how long to wait before asking
-/// for it again: TCP's estimate from a smoothed time and its variation (RFC 6298, section 2).
-/// Only times of what was not asked for twice count, for of others nobody knows which of the
-/// askings was answered (Karn's algorithm).
+/// for it again.
+///
+/// As in TCP (RFC 6298) the wait is four times what is usual, and what was asked for twice tells
+/// nothing (Karn's algorithm). Unlike there many a time is no round trip: what is waited for may
+/// have been lost on its way to whoever has to work on it, and came only when that one had asked.
+/// So usual is the lower quartile of the last times, and not their mean, which would make waits
+/// longer by what waits have cost.
 class ResponseTime {
  public:
   using Seconds = std::chrono::duration<double>;
   using milliseconds = std::chrono::milliseconds;
 
-  static constexpr milliseconds kFirstTimeout{100};  ///< until anything is known
+  static constexpr milliseconds kFirstTimeout{20};  ///< until anything is known
   static constexpr milliseconds kShortestTimeout{
       5};  ///< what a busy machine takes to wake somebody
   static constexpr milliseconds kLongestTimeout{800};
 
   /// Something has come after so long.
-  void took(Seconds time) {
-    if (!smoothed_) {
-      smoothed_ = time;
-      variation_ = time / 2;
-      return;
-    }
-    const Seconds error = time - *smoothed_;
-    variation_ += (Seconds(std::abs(error.count())) - variation_) / 4;
-    *smoothed_ += error / 8;
-  }
+  void took(Seconds time);
   /// How long to wait before asking again.
-  milliseconds timeout() const {
-    if (!smoothed_) return kFirstTimeout;
-    return std::clamp(std::chrono::ceil<milliseconds>(*smoothed_ + 4 * variation_),
-                      kShortestTimeout, kLongestTimeout);
-  }
+  milliseconds timeout() const;
 
  private:
-  std::optional<Seconds> smoothed_;
-  Seconds variation_{0.0};
+  static constexpr std::size_t kTimes = 16;
+  std::array<Seconds, kTimes> times_{};  // the last ones, round and round
+  std::size_t took_ = 0;
 };
 
 }  // namespace nextview

@@ -245,7 +245,6 @@ void RunSupervisor::watch() {
   give_way();  // from here on this process only looks on
   // Most often nothing is lost and somebody works: then less and less often.
   AskTimer reminder = reminder_after(kLeastMissed);
-  int reminded_after = 0;
   const RunRecord& record = heard_.record;
   while (!record.stop() || !record.missing().empty()) {
     pump(milliseconds(20));
@@ -253,15 +252,15 @@ void RunSupervisor::watch() {
     log_keeping_.step(*log_, *bus_, heard_);
     make_rows();
     if (!reminder.due()) continue;
-    ask_for_missed();
-    if (const int views = record.committed_views(); views != std::exchange(reminded_after, views)) {
+    if (ask_for_missed()) {
       reminder.restart(std::max(kLeastMissed, 2 * bus_->response_time().timeout()));
     }
   }
   make_rows();
 }
 
-void RunSupervisor::ask_for_missed() {
+/// @return whether something has come since
+bool RunSupervisor::ask_for_missed() {
   // What was missing when it was looked before, too: what only this listener has missed nobody else
   // makes good.
   std::set<MissingMessage> missed;
@@ -270,7 +269,9 @@ void RunSupervisor::ask_for_missed() {
     if (missed_.contains(missing)) request(*bus_, missing, heard_.record);
     missed.insert(missing);
   }
+  const bool come = !std::includes(missed.begin(), missed.end(), missed_.begin(), missed_.end());
   missed_ = std::move(missed);
+  return come;
 }
 
 void RunSupervisor::make_rows(milliseconds wait_for_scoring) {

@@ -59,7 +59,7 @@ class RunSupervisor {
   bool config_recorded(AskTimer& reminder);
   void start_scoring();
   void watch();
-  void ask_for_missed();
+  bool ask_for_missed();
   void complete_log();
   void collect_statuses();
   void end_early(const EndsEarly& end);
