@@ -23,6 +23,7 @@
 #include "runner/run_signals.h"
 #include "runner/waited_for.h"
 #include "scoring/kept_file.h"
+#include "sensor/part_size.h"
 #include "sensor/sensor_config.h"
 
 namespace nextview {
@@ -52,12 +53,16 @@ constexpr milliseconds kLeastMissed{50};
 /// Waits from first on up to two seconds.
 AskTimer reminder_after(milliseconds first) { return AskTimer(first, milliseconds(2000)); }
 
-RoleOptions role_options(const RunOptions& options, const RunSetup& setup) {
+/// @param part_bytes of range images, as sensor_sim --part-bytes has it
+RoleOptions role_options(const RunOptions& options, const RunSetup& setup, std::size_t part_bytes) {
   RoleOptions by_role;
   by_role["mapper"] = setup.mapper_options;
   if (options.real_time > 0.0) {
     const std::string real_time = fmt::format("--real-time={}", options.real_time);
     by_role["base_sim"] = by_role["sensor_sim"] = {real_time};
+  }
+  if (part_bytes != kPartBytes) {
+    by_role["sensor_sim"].push_back(fmt::format("--part-bytes={}", part_bytes));
   }
   return by_role;
 }
@@ -163,12 +168,20 @@ void RunSupervisor::take_up_again() {
 
 void RunSupervisor::start_up() {
   join_bus();
-  processes_.emplace(lcm_url_, setup_.config.run, files_.log, answering_, reached_, folder_.lock(),
-                     role_options(options_, setup_));
+  const std::size_t earlier_parts = earlier_ ? earlier_->part_bytes() : 0;
+  const RoleOptions options =
+      role_options(options_, setup_, earlier_parts > 0 ? earlier_parts : part_bytes_on(lcm_url_));
+  std::vector<std::string> started = answering_;
+  for (const std::string& role : options_.elsewhere) std::erase(started, role);
+  processes_.emplace(lcm_url_, setup_.config.run, files_.log, started, reached_, folder_.lock(),
+                     options);
   if (options_.verbose || !options_.without.empty()) {
     progress_.say(fmt::format("bus: {}, run {}", lcm_url_, setup_.config.run));
   }
 
+  for (const std::string& role : options_.elsewhere) {
+    progress_.say("start it by hand: " + processes_->command_of(role, reached_));
+  }
   start_viewer();
 
   // Nothing is known about a run before its configuration is, so the run starts with it: not before

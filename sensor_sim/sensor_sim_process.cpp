@@ -20,11 +20,13 @@ constexpr int kViewsRemembered = 8;
 }  // namespace
 
 SensorSimProcess::SensorSimProcess(Bus& bus, const run_config_t& config,
-                                   const std::function<bool()>& interrupted, double real_time)
+                                   const std::function<bool()>& interrupted, double real_time,
+                                   std::size_t part_bytes)
     : bus_(bus),
       config_(config),
       scene_(load_scene(config, interrupted)),
       rays_(make_ray_table(sensor_of(config))),
+      part_bytes_(part_bytes),
       baseline_m_(baseline_m_of(sensor_of(config))),
       real_time_(real_time) {
   bus_.on<arrival_t>([this](const arrival_t& arrival) {
@@ -69,7 +71,7 @@ SensorSimProcess::Scanned SensorSimProcess::scan_at(const arrival_t& arrival) co
 
   const std::int64_t utime = arrival.utime + std::llround(config_.sensor.scan_duration_s * 1e6);
   return {
-      range_image_messages(image, arrival.view, arrival.attempt, utime),
+      range_image_messages(image, arrival.view, arrival.attempt, utime, part_bytes_),
       timing_message(bus_.role(), utime, arrival.view, arrival.attempt, {{"scan", wall.count()}})};
 }
 

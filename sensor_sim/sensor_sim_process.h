@@ -9,6 +9,7 @@
 #include "lcmtypes/bus_process.h"
 #include "lcmtypes/real_time.h"
 #include "scene/scene.h"
+#include "sensor/range_image_message.h"
 #include "sensor/sensor_geometry.h"
 
 namespace nextview {
@@ -19,8 +20,10 @@ class SensorSimProcess : public BusProcess {
   /// @throws SceneError when the run's scene cannot be loaded
   /// @param interrupted  when to give up loading it, as in LoadLimits
   /// @param real_time  simulated seconds a second; 0: at once
+  /// @param part_bytes  of ray table and ranges a part of a range image carries
   SensorSimProcess(Bus& bus, const run_config_t& config,
-                   const std::function<bool()>& interrupted = {}, double real_time = 0.0);
+                   const std::function<bool()>& interrupted = {}, double real_time = 0.0,
+                   std::size_t part_bytes = kPartBytes);
 
   /// Scans at the next arrival, or publishes what it has scanned.
   bool step() override;
@@ -46,6 +49,7 @@ class SensorSimProcess : public BusProcess {
   run_config_t config_;
   Scene scene_;
   RayTable rays_;
+  std::size_t part_bytes_;
   double baseline_m_;                         ///< of a line striper
   std::map<MessageKey, arrival_t> arrivals_;  // all that may have to be scanned at again
   std::deque<MessageKey> to_scan_;            // of arrivals_
