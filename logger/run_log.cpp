@@ -41,7 +41,7 @@ void RunLog::note_damage() {
 }
 
 void RunLog::read_on() {
-  while (auto message = next()) {
+  for (begin_ = position(); auto message = next(); begin_ = position()) {
     ++counters_.messages;
     contents_.add(*message);
     if (!run_ && message->channel != Channel<run_config_t>::name) {
@@ -52,6 +52,24 @@ void RunLog::read_on() {
     if (!run_ || before_config_.empty()) continue;
     for (const LoggedMessage& earlier : std::exchange(before_config_, {})) take(earlier);
   }
+}
+
+void RunLog::note_begin(int view) {
+  if (view > settled_views_) begin_of_view_.try_emplace(view, begin_);
+}
+
+std::int64_t RunLog::begin_of_view(int view) const {
+  const auto begin = begin_of_view_.find(view);
+  return begin == begin_of_view_.end() ? 0 : begin->second;
+}
+
+void RunLog::settle(int views) {
+  settled_views_ = std::max(settled_views_, views);
+  begin_of_view_.erase(begin_of_view_.begin(), begin_of_view_.upper_bound(settled_views_));
+  const std::string images(Channel<range_image_t>::name);
+  seen_.erase(seen_.lower_bound({images, {}}),
+              seen_.lower_bound({images, {settled_views_ + 1, 0, 0}}));
+  record_.forget_searches(settled_views_);
 }
 
 void RunLog::take(const LoggedMessage& message) {
@@ -87,6 +105,12 @@ void RunLog::take_as(const LoggedMessage& message) {
   ++counters_.ours;
   if constexpr (Channel<Message>::answered) {
     const MessageKey key = key_of(*decoded.message);
+    if constexpr (std::is_same_v<Message, range_image_t>) {
+      if (key.view <= settled_views_) {
+        ++counters_.repeated;
+        return;
+      }
+    }
     const XXH128_hash_t hash = XXH3_128bits(message.bytes.data(), message.bytes.size());
     const auto [seen, is_new] =
         seen_.emplace(std::pair(message.channel, key), Hash(hash.high64, hash.low64));
@@ -109,6 +133,7 @@ void RunLog::take_as(const LoggedMessage& message) {
   if constexpr (requires { record_.add(*decoded.message); }) {
     try {
       record_.add(*decoded.message);
+      if constexpr (Channel<Message>::answered) note_begin(key_of(*decoded.message).view);
     } catch (const RejectedMessage& rejected) {
       const MessageKey key = key_of(*decoded.message);
       dropped_.push_back(describe(MissingMessage{Channel<Message>::name, key.view, key.attempt}) +

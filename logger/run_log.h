@@ -44,6 +44,14 @@ class RunLog {
   /// Takes in what has been written since the last call.
   void read_on();
 
+  /// Of views that are whole: what they tried is freed, and so is what tells whether a range image
+  /// that comes again is the same. Only while the run goes on; a replay looks at everything.
+  void settle(int views);
+  /// Where the first message of a view that is not settled begins.
+  std::int64_t begin_of_view(int view) const;
+  /// Where the last message read ends.
+  std::int64_t position() const { return readers_[reading_].position(); }
+
   const RunRecord& record() const { return record_; }
   RunRecord& record() { return record_; }
   const LogCounters& counters() const { return counters_; }
@@ -72,6 +80,8 @@ class RunLog {
   template <class Message>
   void take_as(const LoggedMessage& message);
 
+  void note_begin(int view);
+
   std::vector<LogReader> readers_;  // one a file
   std::size_t reading_ = 0;         // of them
   std::size_t damage_noted_ = 0;    // of the one that is being read
@@ -84,6 +94,9 @@ class RunLog {
   std::vector<std::string> contradictions_;
   std::vector<std::string> later_ends_;
   std::map<std::pair<std::string, MessageKey>, Hash> seen_;
+  std::map<int, std::int64_t> begin_of_view_;  // of those that are not settled
+  std::int64_t begin_ = 0;                     // of the message under way
+  int settled_views_ = 0;
   std::vector<LoggedMessage> before_config_;  // while the run is not known
 };
 

@@ -1,5 +1,6 @@
 #include "runner/earlier_run.h"
 
+#include <algorithm>
 #include <limits>
 #include <memory>
 #include <type_traits>
@@ -62,6 +63,11 @@ void EarlierRun::take_in(const LoggedMessage& message, std::int64_t position) {
       record_.add(*decoded.message);
     } catch (const RejectedMessage&) {
       return;  // as whoever heard it did
+    }
+    if constexpr (std::is_same_v<Message, range_image_t>) {
+      const range_image_t& part = *decoded.message;
+      const auto bytes = static_cast<std::size_t>(16 * part.entries + 4 * part.pixels);
+      part_bytes_ = std::max(part_bytes_, (bytes + 15) / 16 * 16);
     }
     positions_.try_emplace({Channel<Message>::name, key_of(*decoded.message)}, position);
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <map>
@@ -29,6 +30,8 @@ class EarlierRun {
   const run_config_t& config() const { return *record_.config(); }
   /// Without the range images themselves.
   const RunRecord& record() const { return record_; }
+  /// How much its range images' parts carry, so that they can be cut alike; 0: there is none.
+  std::size_t part_bytes() const { return part_bytes_; }
   /// Whether its planner has ended it, and the log lacks nothing.
   bool is_whole() const { return record_.stop() && record_.missing().empty(); }
 
@@ -44,6 +47,7 @@ class EarlierRun {
 
   LogReader reader_;
   RunRecord record_{RangeImages::OnlyCount};
+  std::size_t part_bytes_ = 0;
   std::map<std::pair<std::string_view, MessageKey>, std::int64_t> positions_;  // in the log
 };
 

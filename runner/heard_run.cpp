@@ -5,21 +5,12 @@
 namespace nextview {
 
 void HeardRun::listen(Bus& bus) {
-  const auto add = [this](const auto& message) {
-    record.add(message);
-    last_progress = Clock::now();
-  };
-  bus.on<goal_t>([this, add](const goal_t& goal) {
-    add(goal);
-    if (!first_goal) first_goal = last_progress;
-  });
+  const auto add = [this](const auto& message) { take(message); };
+  bus.on<goal_t>(add);
   bus.on<search_t>(add);
   bus.on<arrival_t>(add);
   bus.on<range_image_t>(add);
-  bus.on<commit_t>([this, add](const commit_t& commit) {
-    add(commit);
-    last_commit = last_progress;
-  });
+  bus.on<commit_t>(add);
   bus.on<stop_t>(add);
   bus.on<timing_t>([this](const timing_t& timing) {
     record.add(timing);

@@ -6,6 +6,7 @@
 #include <optional>
 #include <set>
 #include <string>
+#include <type_traits>
 
 #include "lcmtypes/bus.h"
 #include "lcmtypes/heard_pace.h"
@@ -36,6 +37,16 @@ struct HeardRun {
   /// Has everything of the run that the bus delivers come here; this must outlive the bus's
   /// handlers and stay where it is.
   void listen(Bus& bus);
+  /// Something new of the run has come.
+  template <class Message>
+  void take(const Message& message) {
+    record.add(message);
+    last_progress = Clock::now();
+    if constexpr (std::is_same_v<Message, goal_t>) {
+      if (!first_goal) first_goal = last_progress;
+    }
+    if constexpr (std::is_same_v<Message, commit_t>) last_commit = last_progress;
+  }
 };
 
 }  // namespace nextview

@@ -106,6 +106,16 @@ void add_scene_options(CLI::App& app, RunOptions& options) {
       ->check(CLI::IsMember({"sensor_sim", "base_sim"}))
       ->group(group);
   app.add_option(
+         "--elsewhere", options.elsewhere,
+         "Do not start these but wait for them: sensor_sim, base_sim, mapper, separated by commas. "
+         "They are started by hand, on other hosts say, by the commands that are printed; for "
+         "other "
+         "hosts --lcm-url has to have a ttl of at least 1")
+      ->delimiter(',')
+      ->allow_extra_args(false)
+      ->check(CLI::IsMember({"sensor_sim", "base_sim", "mapper"}))
+      ->group(group);
+  app.add_option(
          "--planner", options.planner,
          "A planner of your own: this program is started in place of nextview_planner, with "
          "--lcm-url=URL --run=N, once the others are ready")
@@ -407,9 +417,10 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
 /// @throws CLI::ValidationError naming an option that is
 void check_resume(const CLI::App& app, RunOptions& options) {
   if (options.resume.empty()) return;
-  const std::set<std::string> free = {"--resume",    "--without", "--planner",     "--lcm-url",
-                                      "--patience",  "--cache",   "--no-coverage", "--verbose",
-                                      "--real-time", "--view",    "--paused",      "--window"};
+  const std::set<std::string> free = {"--resume",  "--without",   "--elsewhere", "--planner",
+                                      "--lcm-url", "--patience",  "--cache",     "--no-coverage",
+                                      "--verbose", "--real-time", "--view",      "--paused",
+                                      "--window"};
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() == 0 || free.contains(option->get_name())) continue;
     throw CLI::ValidationError(

@@ -38,6 +38,8 @@ struct RunOptions {
   std::string out;     ///< folder of the run; empty: a new one in runs_folder
   std::string runs_folder = "runs";
 
+  std::vector<std::string> elsewhere;  ///< roles that are started by hand, on other hosts say
+
   std::string sensor = "paper";  ///< a name in sensors_folder, or a file
   std::string sensors_folder;    ///< empty: those of this repository
   std::optional<double> aperture_deg;

@@ -63,19 +63,32 @@ void RunProcesses::start_recorder(Children::const_iterator before) {
 
 void RunProcesses::start(const std::string& role, int reached, Children::const_iterator before) {
   const bool own = role == kPlanner && has_own_planner();
+  try {
+    children_.emplace(before, role, arguments_of(role, reached),
+                      ChildTerms{.nice_value = nice_value_});
+  } catch (const std::system_error& error) {
+    throw SetupError(own ? std::string("--planner: ") + error.what() +
+                               ": name a program that can be run"
+                         : std::string(error.what()) + ": build nextview again");
+  }
+}
+
+std::vector<std::string> RunProcesses::arguments_of(const std::string& role, int reached) const {
+  const bool own = role == kPlanner && has_own_planner();
   std::vector<std::string> arguments = {program_of(role).string(), "--lcm-url=" + lcm_url_,
                                         "--run=" + std::to_string(run_)};
   if (reached > 0 && !own) arguments.push_back("--catch-up=" + std::to_string(reached));
   if (const auto options = options_.find(role); options != options_.end()) {
     arguments.insert(arguments.end(), options->second.begin(), options->second.end());
   }
-  try {
-    children_.emplace(before, role, arguments, ChildTerms{.nice_value = nice_value_});
-  } catch (const std::system_error& error) {
-    throw SetupError(own ? std::string("--planner: ") + error.what() +
-                               ": name a program that can be run"
-                         : std::string(error.what()) + ": build nextview again");
-  }
+  return arguments;
+}
+
+std::string RunProcesses::command_of(const std::string& role, int reached) const {
+  std::string command = "nextview_" + role;
+  const std::vector<std::string> arguments = arguments_of(role, reached);
+  for (std::size_t i = 1; i < arguments.size(); ++i) command += " '" + arguments[i] + "'";
+  return command;
 }
 
 std::filesystem::path RunProcesses::program_of(const std::string& role) const {

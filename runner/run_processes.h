@@ -58,6 +58,8 @@ class RunProcesses {
   void restart(const std::string& role, int reached);
   /// Whether the planner is the user's own, of which nobody knows whether it would say the same.
   bool has_own_planner() const { return !own_planner_.empty(); }
+  /// What to type to start a process by hand, on a host that has nextview in its PATH.
+  std::string command_of(const std::string& role, int reached) const;
   /// What the processes have said on stderr since the last call, each line with its role.
   std::vector<std::string> take_lines();
 
@@ -74,6 +76,7 @@ class RunProcesses {
 
   void start_recorder(Children::const_iterator before);
   void start(const std::string& role, int reached, Children::const_iterator before);
+  std::vector<std::string> arguments_of(const std::string& role, int reached) const;
   std::filesystem::path program_of(const std::string& role) const;
   Children::iterator child(const std::string& role);
 

@@ -23,6 +23,8 @@
 #include "runner/run_signals.h"
 #include "runner/waited_for.h"
 #include "scoring/kept_file.h"
+#include "sensor/part_size.h"
+#include "sensor/sensor_config.h"
 
 namespace nextview {
 namespace {
@@ -45,15 +47,22 @@ bool all_of(const std::set<std::string>& roles, const std::set<std::string>& hea
   return std::includes(heard_of.begin(), heard_of.end(), roles.begin(), roles.end());
 }
 
+/// How long something must be missing before it is asked for, where nobody waits for it to go on.
+constexpr milliseconds kLeastMissed{50};
+
 /// Waits from first on up to two seconds.
 AskTimer reminder_after(milliseconds first) { return AskTimer(first, milliseconds(2000)); }
 
-RoleOptions role_options(const RunOptions& options, const RunSetup& setup) {
+/// @param part_bytes of range images, as sensor_sim --part-bytes has it
+RoleOptions role_options(const RunOptions& options, const RunSetup& setup, std::size_t part_bytes) {
   RoleOptions by_role;
   by_role["mapper"] = setup.mapper_options;
   if (options.real_time > 0.0) {
     const std::string real_time = fmt::format("--real-time={}", options.real_time);
     by_role["base_sim"] = by_role["sensor_sim"] = {real_time};
+  }
+  if (part_bytes != kPartBytes) {
+    by_role["sensor_sim"].push_back(fmt::format("--part-bytes={}", part_bytes));
   }
   return by_role;
 }
@@ -126,6 +135,9 @@ void RunSupervisor::join_bus() {
     lcm_url_ = port_->lcm_url();
   }
   bus_ = std::make_unique<Bus>(lcm_url_, setup_.config.run, "run");
+  heard_.on_missing = [this](const request_t& request) {
+    if (!log_keeping_.answer(*bus_, request) && earlier_) earlier_->answer(*bus_, request);
+  };
   heard_.listen(*bus_);
 }
 
@@ -149,7 +161,6 @@ void RunSupervisor::take_up_again() {
     make_rows();  // no range image is kept for longer than it is needed
   });
   reached_ = heard_.record.latest_view();
-  heard_.on_missing = [this](const request_t& request) { earlier_->answer(*bus_, request); };
   recorder_began_anew_ = true;
   recording();
   logged_before_ = log_->counters().ours;
@@ -158,12 +169,20 @@ void RunSupervisor::take_up_again() {
 
 void RunSupervisor::start_up() {
   join_bus();
-  processes_.emplace(lcm_url_, setup_.config.run, files_.log, answering_, reached_, folder_.lock(),
-                     role_options(options_, setup_));
+  const std::size_t earlier_parts = earlier_ ? earlier_->part_bytes() : 0;
+  const RoleOptions options =
+      role_options(options_, setup_, earlier_parts > 0 ? earlier_parts : part_bytes_on(lcm_url_));
+  std::vector<std::string> started = answering_;
+  for (const std::string& role : options_.elsewhere) std::erase(started, role);
+  processes_.emplace(lcm_url_, setup_.config.run, files_.log, started, reached_, folder_.lock(),
+                     options);
   if (options_.verbose || !options_.without.empty()) {
     progress_.say(fmt::format("bus: {}, run {}", lcm_url_, setup_.config.run));
   }
 
+  for (const std::string& role : options_.elsewhere) {
+    progress_.say("start it by hand: " + processes_->command_of(role, reached_));
+  }
   start_viewer();
 
   // Nothing is known about a run before its configuration is, so the run starts with it: not before
@@ -223,24 +242,35 @@ bool RunSupervisor::config_recorded(AskTimer& reminder) {
 
 void RunSupervisor::watch() {
   give_way();  // from here on this process only looks on
-  AskTimer reminder = reminder_after(milliseconds(300));
-  auto reminded_since = heard_.last_progress;
+  // Most often nothing is lost and somebody works: then less and less often.
+  AskTimer reminder = reminder_after(kLeastMissed);
   const RunRecord& record = heard_.record;
   while (!record.stop() || !record.missing().empty()) {
     pump(milliseconds(20));
     log_mending_.step(*log_, *bus_, heard_);
+    log_keeping_.step(*log_, *bus_, heard_);
     make_rows();
-    if (reminded_since != heard_.last_progress) {
-      reminded_since = heard_.last_progress;
-      reminder.restart();
-    }
-    // Most often nothing is lost and somebody works; asking costs little, and else nobody would
-    // make good what only this listener has missed.
-    if (reminder.due()) {
-      for (const MissingMessage& missing : record.missing()) request(*bus_, missing);
+    if (!reminder.due()) continue;
+    if (ask_for_missed()) {
+      reminder.restart(std::max(kLeastMissed, 2 * bus_->response_time().timeout()));
     }
   }
   make_rows();
+}
+
+/// @return whether something has come since
+bool RunSupervisor::ask_for_missed() {
+  // What was missing when it was looked before, too: what only this listener has missed nobody else
+  // makes good.
+  std::set<MissingMessage> missed;
+  for (const MissingMessage& missing : heard_.record.missing()) {
+    if (log_keeping_.take_from_log(missing, heard_)) continue;
+    if (missed_.contains(missing)) request(*bus_, missing, heard_.record);
+    missed.insert(missing);
+  }
+  const bool come = !std::includes(missed.begin(), missed.end(), missed_.begin(), missed_.end());
+  missed_ = std::move(missed);
+  return come;
 }
 
 void RunSupervisor::make_rows(milliseconds wait_for_scoring) {
@@ -259,10 +289,17 @@ void RunSupervisor::complete_log() {
     const std::vector<MissingMessage> missing = log_->record().missing();
     if (missing.empty()) return;
     // What is asked for is recorded too: the log grows, and is none the better for it.
-    if (missing != had_missing) heard_.last_progress = Clock::now();
+    if (missing != had_missing) {
+      heard_.last_progress = Clock::now();
+      reminder.restart(bus_->response_time().timeout());
+    }
     had_missing = missing;
     if (reminder.due()) {
-      for (const MissingMessage& message : missing) request(*bus_, message);
+      for (const MissingMessage& message : missing) {
+        if (!publish_again(*bus_, message, heard_.record)) {
+          request(*bus_, message, log_->record());
+        }
+      }
     }
     try {
       pump(milliseconds(5));

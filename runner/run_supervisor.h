@@ -13,6 +13,7 @@
 #include "reports/run_report.h"
 #include "runner/earlier_run.h"
 #include "runner/heard_run.h"
+#include "runner/log_keeping.h"
 #include "runner/log_mending.h"
 #include "runner/port_lock.h"
 #include "runner/restart_limit.h"
@@ -56,6 +57,7 @@ class RunSupervisor {
   bool recording();
   bool config_recorded(AskTimer& reminder);
   void watch();
+  bool ask_for_missed();
   void complete_log();
   void collect_statuses();
   void end_early(const EndsEarly& end);
@@ -95,8 +97,10 @@ class RunSupervisor {
   RestartLimit restart_limit_;
   std::optional<RunLog> log_;
   std::int64_t logged_before_ = 0;  ///< messages of the run that were in the log at the start
+  LogKeeping log_keeping_;
   LogMending log_mending_;
   bool recorder_began_anew_ = false;
+  std::set<MissingMessage> missed_;  ///< when last looked
   std::optional<EndsEarly> ended_early_;
   RunScoring scoring_;
 };

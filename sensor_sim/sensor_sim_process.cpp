@@ -20,14 +20,17 @@ constexpr int kViewsRemembered = 8;
 }  // namespace
 
 SensorSimProcess::SensorSimProcess(Bus& bus, const run_config_t& config,
-                                   const std::function<bool()>& interrupted, double real_time)
+                                   const std::function<bool()>& interrupted, double real_time,
+                                   std::size_t part_bytes)
     : bus_(bus),
       config_(config),
       scene_(load_scene(config, interrupted)),
       rays_(make_ray_table(sensor_of(config))),
+      part_bytes_(part_bytes),
       baseline_m_(baseline_m_of(sensor_of(config))),
       real_time_(real_time) {
   bus_.on<arrival_t>([this](const arrival_t& arrival) {
+    if (asked_for_ && arrival.view >= asked_for_->view) asked_for_.reset();
     if (arrival.arrived == 0) return;
     arrivals_.emplace(key_of(arrival), arrival);
     to_scan_.push_back(key_of(arrival));
@@ -68,7 +71,7 @@ SensorSimProcess::Scanned SensorSimProcess::scan_at(const arrival_t& arrival) co
 
   const std::int64_t utime = arrival.utime + std::llround(config_.sensor.scan_duration_s * 1e6);
   return {
-      range_image_messages(image, arrival.view, arrival.attempt, utime),
+      range_image_messages(image, arrival.view, arrival.attempt, utime, part_bytes_),
       timing_message(bus_.role(), utime, arrival.view, arrival.attempt, {{"scan", wall.count()}})};
 }
 
@@ -77,6 +80,10 @@ void SensorSimProcess::publish_scanned() {
   bus_.publish(scanned_->timing);
   scanned_.reset();
   bus_.forget_before<range_image_t>(latest_view_ - kViewsRemembered);
+  const int settled = bus_.settled_views();
+  arrivals_.erase(arrivals_.begin(), arrivals_.lower_bound({settled + 1, 0, 0}));
+  std::erase_if(to_scan_, [settled](const MessageKey& key) { return key.view <= settled; });
+  bus_.ignore_before<arrival_t>(settled + 1);
 }
 
 std::chrono::milliseconds SensorSimProcess::longest_wait() const {
@@ -85,6 +92,7 @@ std::chrono::milliseconds SensorSimProcess::longest_wait() const {
 
 void SensorSimProcess::ask_again() {
   if (behind()) bus_.request<arrival_t>(reached(), 0);
+  if (asked_for_) bus_.request<arrival_t>(asked_for_->view, asked_for_->attempt);
 }
 
 void SensorSimProcess::on_missing(const request_t& request) {
@@ -98,7 +106,9 @@ void SensorSimProcess::on_missing(const request_t& request) {
     forgotten = true;
     if (std::find(to_scan_.begin(), to_scan_.end(), key) == to_scan_.end()) to_scan_.push_back(key);
   }
-  if (!forgotten) bus_.request<arrival_t>(request.view, request.attempt);
+  if (forgotten) return;
+  asked_for_ = key_of(request);
+  bus_.request<arrival_t>(request.view, request.attempt);
 }
 
 }  // namespace nextview

@@ -9,6 +9,7 @@
 #include "lcmtypes/bus_process.h"
 #include "lcmtypes/real_time.h"
 #include "scene/scene.h"
+#include "sensor/range_image_message.h"
 #include "sensor/sensor_geometry.h"
 
 namespace nextview {
@@ -19,8 +20,10 @@ class SensorSimProcess : public BusProcess {
   /// @throws SceneError when the run's scene cannot be loaded
   /// @param interrupted  when to give up loading it, as in LoadLimits
   /// @param real_time  simulated seconds a second; 0: at once
+  /// @param part_bytes  of ray table and ranges a part of a range image carries
   SensorSimProcess(Bus& bus, const run_config_t& config,
-                   const std::function<bool()>& interrupted = {}, double real_time = 0.0);
+                   const std::function<bool()>& interrupted = {}, double real_time = 0.0,
+                   std::size_t part_bytes = kPartBytes);
 
   /// Scans at the next arrival, or publishes what it has scanned.
   bool step() override;
@@ -28,6 +31,7 @@ class SensorSimProcess : public BusProcess {
   /// Asks for the latest arrival when it has been started again; those before come when somebody
   /// asks for their range images.
   void ask_again() override;
+  bool waits() const override { return behind() || asked_for_; }
   bool behind() const override { return arrivals_.empty() && reached() > 0; }
   /// Scans again when a range image is asked for that the bus has forgotten: the same image.
   void on_missing(const request_t& request) override;
@@ -45,10 +49,12 @@ class SensorSimProcess : public BusProcess {
   run_config_t config_;
   Scene scene_;
   RayTable rays_;
+  std::size_t part_bytes_;
   double baseline_m_;                         ///< of a line striper
-  std::map<MessageKey, arrival_t> arrivals_;  // all of them
+  std::map<MessageKey, arrival_t> arrivals_;  // all that may have to be scanned at again
   std::deque<MessageKey> to_scan_;            // of arrivals_
   int latest_view_ = 0;                       // scanned
+  std::optional<MessageKey> asked_for_;       // somebody waits for a scan at this arrival
   RealTime real_time_;
   std::optional<Scanned> scanned_;  // not published yet: the scan is under way
 };

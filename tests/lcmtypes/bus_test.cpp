@@ -202,6 +202,115 @@ TEST_F(BusPair, WhatIsForgottenIsMissingAndMayBePublishedAgain) {
   EXPECT_EQ(mapper_.counters().repeated, 2) << "the one made again is the one that was";
 }
 
+class BusPairWithParts : public BusPair {
+ protected:
+  static constexpr int kParts = 6;
+
+  BusPairWithParts() {
+    mapper_.on<range_image_t>([this](const range_image_t& part) { parts_.push_back(part.part); });
+    // Part 0 has the ray table and a pixel, each other one a pixel.
+    const range_image_t image = example<range_image_t>();
+    for (int number = 0; number < kParts; ++number) {
+      range_image_t part = image;
+      part.part = number;
+      part.parts = kParts;
+      part.first_pixel = number;
+      part.pixels = 1;
+      part.range_m = {image.range_m[static_cast<std::size_t>(number)]};
+      if (number > 0) {
+        part.first_entry = image.entries;
+        part.entries = 0;
+        part.entry_sin.clear();
+        part.entry_cos.clear();
+      }
+      planner_.publish(part);
+    }
+    settle();
+    parts_.clear();
+  }
+  std::size_t sent() const { return on_channel("NEXTVIEW_RANGE_IMAGE").size(); }
+
+  std::vector<int> parts_;
+};
+
+TEST_F(BusPairWithParts, SendsAgainThePartsThatAreAskedForAndNoOthers) {
+  const std::vector<PartRange> lacking = {{1, 1}, {4, 5}};
+  mapper_.request_parts<range_image_t>(2, 1, lacking);
+  settle();
+  EXPECT_EQ(planner_.counters().lost, 3);
+  EXPECT_EQ(sent(), kParts + 3U);
+  EXPECT_EQ(mapper_.counters().repeated, 3);
+}
+
+TEST_F(BusPairWithParts, IsAskedForAllWhenItNeverAnswersForParts) {
+  const auto deaf = network_.connect();
+  int whole = 0;
+  deaf->subscribe("NEXTVIEW_REQUEST", [&](std::span<const std::uint8_t>) { ++whole; });
+  Bus lonely(network_.connect(), 7, "lonely");
+  const std::vector<PartRange> lacking = {{0, 3}};
+  for (int i = 0; i < 16; ++i) lonely.request_parts<range_image_t>(9, 1, lacking);
+  while (deaf->handle(milliseconds(0))) {
+  }
+  EXPECT_EQ(whole, 2);
+  EXPECT_EQ(on_channel("NEXTVIEW_PARTS_REQUEST").size(), 14U);
+}
+
+TEST_F(BusPairWithParts, SendsWhatSeveralAskForAtTheSameTimeOnce) {
+  planner_.answer_once_within(milliseconds(60000));
+  const std::vector<PartRange> lacking = {{1, 2}};
+  mapper_.request_parts<range_image_t>(2, 1, lacking);
+  mapper_.request<range_image_t>(2, 1);
+  settle();
+  EXPECT_EQ(sent(), std::size_t{kParts}) << "it was sent just now";
+}
+
+TEST_F(BusPair, AsksForPartsInOnePacket) {
+  std::vector<PartRange> lacking;
+  for (int part = 0; part < 1000; part += 2) lacking.push_back({part, part});
+  mapper_.request_parts<range_image_t>(2, 1, lacking);
+  settle();
+  constexpr std::size_t kPacket = 1400;
+  ASSERT_EQ(on_channel("NEXTVIEW_PARTS_REQUEST").size(), 1U);
+  EXPECT_LT(on_channel("NEXTVIEW_PARTS_REQUEST")[0].size(), kPacket);
+}
+
+TEST_F(BusPair, KeepsNoMoreThanTheLastViewsOfWhatIsRecorded) {
+  goal_t goal = example<goal_t>();
+  Bus run(network_.connect(), 7, "run");
+  for (goal.view = 1; goal.view <= 300; ++goal.view) {
+    planner_.publish(goal);
+    recorded_t recorded{};
+    recorded.recorded_views = goal.view;
+    run.publish(recorded);
+    settle();
+  }
+  EXPECT_EQ(planner_.settled_views(), 292);
+  EXPECT_EQ(planner_.remembered_bytes(), 8 * encode(goal).size());
+}
+
+TEST_F(BusPair, KeepsWhatIsNotRecorded) {
+  goal_t goal = example<goal_t>();
+  for (goal.view = 1; goal.view <= 300; ++goal.view) planner_.publish(goal);
+  EXPECT_EQ(planner_.settled_views(), 0);
+  EXPECT_EQ(planner_.remembered_bytes(), 300 * encode(goal).size());
+}
+
+TEST_F(BusPair, RemembersNoKeysOfViewsItIsThroughWith) {
+  int received = 0;
+  mapper_.on<goal_t>([&](const goal_t&) { ++received; });
+  goal_t goal = example<goal_t>();
+  for (goal.view = 1; goal.view <= 300; ++goal.view) {
+    planner_.publish(goal);
+    settle();
+    mapper_.ignore_before<goal_t>(goal.view);
+  }
+  EXPECT_EQ(mapper_.remembered_keys(), 1U);
+  mapper_.request<goal_t>(5, 1);
+  settle();
+  EXPECT_EQ(received, 300);
+  EXPECT_EQ(mapper_.counters().repeated, 1);
+}
+
 TEST_F(BusPair, WhatAHandlerThrowsComesOut) {
   mapper_.on<goal_t>([](const goal_t&) { throw std::runtime_error("a fault of our own"); });
   planner_.publish(example<goal_t>());

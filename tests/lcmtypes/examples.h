@@ -34,5 +34,9 @@ template <>
 pace_t example();
 template <>
 seal_t example();
+template <>
+parts_request_t example();
+template <>
+recorded_t example();
 
 }  // namespace nextview
