@@ -373,13 +373,17 @@ void RunSupervisor::end_processes(FinishedRun& run) {
 void RunSupervisor::wait_for_scoring() {
   const auto pending = [](const auto& work) { return work && work->pending(); };
   AskTimer patience = reminder_after(milliseconds(1000));
+  int said_percent = -1;
   while ((pending(near_surface_) || pending(scoring_)) && noted_signal() == 0 && !ended_early_) {
     make_rows(milliseconds(50));
-    if (pending(scoring_) && patience.due()) {
-      progress_.say(fmt::format(
-          "working out how much of the scene can be seen at all, for the coverage: {} %",
-          scoring_->percent()));
-    }
+    if (!pending(scoring_) || !patience.due()) continue;
+    const int percent = scoring_->percent();
+    if (percent == said_percent) continue;
+    said_percent = percent;
+    progress_.say(fmt::format(
+        "working out how much of the scene can be seen at all, for the coverage, which Ctrl-C "
+        "leaves out: {} %",
+        percent));
   }
   if (near_surface_) near_surface_->request_stop();
   if (scoring_) scoring_->request_stop();
