@@ -1,6 +1,7 @@
 # Man pages, made of what the programs say of themselves, and completion in bash. Pages are made where
 # help2man is installed: ninja man_pages, which packages do by themselves.
-foreach(command nextview nextview_run nextview_bound nextview_replay nextview_picture nextview_viewer)
+foreach(command nextview nextview_run nextview_bound nextview_replay nextview_picture nextview_report nextview_export
+                nextview_search nextview_viewer)
   install(FILES nextview.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
           RENAME ${command} COMPONENT runtime)
 endforeach()

@@ -22,4 +22,5 @@ _nextview() {
       ;;
   esac
 }
-complete -F _nextview nextview nextview_run nextview_bound nextview_replay nextview_picture nextview_viewer
+complete -F _nextview nextview nextview_run nextview_bound nextview_replay nextview_picture nextview_report \
+  nextview_export nextview_search nextview_viewer

@@ -22,6 +22,7 @@ constexpr Command kCommands[] = {
     {"run", "Recover a scene: simulators, mapper, planner, recorder"},
     {"replay", "Rebuild a run's map from its log and compare every digest"},
     {"picture", "Draw what a run has recovered"},
+    {"report", "A page about a run, or about several beside each other, in one HTML file"},
     {"export", "Write a run's voxels, points and poses for other programs"},
     {"viewer", "Show runs in a browser, also one that goes on"},
     {"search", "What the search for a view has tried"},

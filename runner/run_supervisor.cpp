@@ -386,13 +386,17 @@ void RunSupervisor::end_processes(FinishedRun& run) {
 
 void RunSupervisor::wait_for_scoring() {
   AskTimer patience = reminder_after(milliseconds(1000));
+  int said_percent = -1;
   while (scoring_.pending() && noted_signal() == 0 && !ended_early_) {
     make_rows(milliseconds(50));
-    if (scoring_.coverage_pending() && patience.due()) {
-      progress_.say(fmt::format(
-          "working out how much of the scene can be seen at all, for the coverage: {} %",
-          scoring_.percent()));
-    }
+    if (!scoring_.coverage_pending() || !patience.due()) continue;
+    const int percent = scoring_.percent();
+    if (percent == said_percent) continue;
+    said_percent = percent;
+    progress_.say(fmt::format(
+        "working out how much of the scene can be seen at all, for the coverage, which Ctrl-C "
+        "leaves out: {} %",
+        percent));
   }
   scoring_.request_stop();
 }

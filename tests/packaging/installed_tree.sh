@@ -25,6 +25,12 @@ version=${version#nextview }
 for program in "$prefix"/bin/nextview_*; do
   name=${program##*/nextview_}
   [ "$("$program" --version)" = "nextview_$name $version" ] || fail "$program --version: $("$program" --version)"
+  # cad_reader is only for the other programs.
+  [ "$name" = cad_reader ] || "$prefix/bin/nextview" --help | grep -q "^  $name " || fail "nextview does not know $name"
+  case "$name" in
+    cad_reader | mapper | planner | base_sim | sensor_sim) ;;
+    *) [ -e "$prefix/share/bash-completion/completions/nextview_$name" ] || fail "no completion of nextview_$name" ;;
+  esac
 done
 "$prefix/bin/nextview" replay --help | grep -q 'Replays a run' || fail "nextview replay --help"
 if "$prefix/bin/nextview" rum 2> "$folder/err"; then fail "nextview rum"; fi

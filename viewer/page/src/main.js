@@ -23,17 +23,33 @@ let playing = null;
 
 // Drawing: only when something has changed, and once more in full when it has come to rest.
 
+const kRest_ms = 200;
+/// A renderer in software shares the processors with the run it shows: so often while views come in.
+const kArrival_ms = 100;
 let drawing = false;
 let rest = null;
+let arrival_timer = null;
+let arrived_ms = -Infinity;
+
+/// Something came over the socket, and more may follow at once.
+function arrived() {
+  arrived_ms = performance.now();
+  if (arrival_timer) return;
+  arrival_timer = setTimeout(() => {
+    arrival_timer = null;
+    redraw();
+  }, panes.some((pane) => pane.software) ? kArrival_ms : 0);
+}
+
 function redraw() {
   if (drawing) return;
   drawing = true;
   requestAnimationFrame(() => {
     drawing = false;
-    const moving = panes.some((pane) => pane.dragged) || playing !== null;
+    const moving = panes.some((pane) => pane.dragged) || playing !== null || performance.now() - arrived_ms < kRest_ms;
     for (const pane of panes) pane.render(moving);
     clearTimeout(rest);
-    if (moving) rest = setTimeout(redraw_at_rest, 200);
+    if (moving) rest = setTimeout(redraw_at_rest, kRest_ms);
   });
 }
 function redraw_at_rest() {
@@ -311,11 +327,11 @@ const listener = {
       curves.set_view(message.view);
       pane.next = null;
       show_facts();
-      redraw();
+      arrived();
     } else if (message.kind === 'next' && pane) {
       pane.set_next(message.next);
       show_facts();
-      redraw();
+      arrived();
     } else if (message.kind === 'no_cad') {
       show_trouble(`The CAD model cannot be shown: ${message.why}`);
     }
@@ -330,7 +346,7 @@ const listener = {
     }
     if (kind === kKind.tried) pane.set_tried(count, body);
     if (kind === kKind.cad) pane.set_cad(count, body);
-    redraw();
+    arrived();
   },
 };
 
