@@ -11,7 +11,7 @@ struct CoverBoundParameters {
   int most_rounds = 80;             ///< of column generation
   std::size_t poses_a_round = 300;  ///< added to the programme at most
   std::size_t alike = 40;           ///< poses of which one at a time is added
-  /// For more voxels the programme would take hours, and prices are raised and lowered instead.
+  /// For more voxels, which are its rows, the programme is too large: then bound_by_prices.
   std::size_t most_voxels = 20'000;
   CoverPriceParameters prices = {};
 };
