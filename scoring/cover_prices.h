@@ -23,9 +23,9 @@ struct CoverPriceParameters {
 /// and no pose costs more than the dearest; the one over the other is the bound, that of the dual
 /// of the linear relaxation (see fewest_poses). Prices begin at w_v. The dearest pose is taken
 /// again and again, and what it covers falls in price, so that in the end poses are about equally
-/// dear (the multiplicative weights of Garg and Koenemann, FOCS 1998). Prices only fall, so the dearest
-/// is found without asking all poses again. The best bound of all steps counts; of small random
-/// covers it is within 3 % of the programme's in four of five.
+/// dear (the multiplicative weights of Garg and Koenemann, FOCS 1998). Prices only fall, so the
+/// dearest is found without asking all poses again. The best bound of all steps counts; of small
+/// random covers it is within 3 % of the programme's in four of five.
 /// @param done by voxel: covered already, and worth nothing
 /// @param to_cover weight of the others that is to be covered
 double bound_by_prices(const CoverSets& sets, const std::vector<std::uint8_t>& done,
