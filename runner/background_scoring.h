@@ -24,7 +24,7 @@ template <class Result>
 class BackgroundScoring {
  public:
   /// What is to be worked out; it may throw anything, and ends early when stop is requested.
-  using Work = std::function<Result(const std::stop_token& stop, VisibilityProgress*)>;
+  using Work = std::function<Result(const std::stop_token& stop, WorkProgress*)>;
 
   explicit BackgroundScoring(Work work) {
     std::promise<Result> promise;
@@ -58,10 +58,10 @@ class BackgroundScoring {
   /// Why there will be no result, once take() has seen that it failed; else empty.
   const std::string& failure() const { return failure_; }
 
-  /// How much of the work is done, 0 to 100.
+  /// How much of the work is done, 0 to 100; 0 while it is not known how much there is.
   int percent() const {
-    const std::int64_t of = std::max<std::int64_t>(1, progress_->of);
-    return static_cast<int>(100 * progress_->done / of);
+    const std::int64_t of = progress_->of;
+    return of > 0 ? static_cast<int>(100 * progress_->done / of) : 0;
   }
   /// Ends the work soon; what it would have found is lost.
   void request_stop() { thread_.request_stop(); }
@@ -69,7 +69,7 @@ class BackgroundScoring {
  private:
   std::future<Result> coming_;
   std::string failure_;
-  std::shared_ptr<VisibilityProgress> progress_ = std::make_shared<VisibilityProgress>();
+  std::shared_ptr<WorkProgress> progress_ = std::make_shared<WorkProgress>();
   std::jthread thread_;
 };
 

@@ -28,21 +28,29 @@ class Watch {
   Watch() : thread_([this](const std::stop_token& over) { watch(over); }) {}
 
   std::stop_token stop() const { return source_.get_token(); }
-  nextview::VisibilityProgress& progress() { return progress_; }
+  nextview::WorkProgress& progress() { return progress_; }
 
  private:
   void watch(const std::stop_token& over) {
     for (int tick = 1; !over.stop_requested(); ++tick) {
       std::this_thread::sleep_for(std::chrono::milliseconds(50));
       if (nextview::noted_signal() != 0) source_.request_stop();
-      if (tick % 40 == 0 && progress_.of > 0) {
-        std::cerr << "  " << 100 * progress_.done / progress_.of << " %" << std::endl;
-      }
+      if (tick % 40 == 0) show();
     }
   }
 
+  void show() const {
+    const std::int64_t of = progress_.of;
+    const std::int64_t done = progress_.done;
+    const std::string stage = progress_.stage.load();
+    if (stage.empty()) return;
+    std::cerr << "  " << stage << ": "
+              << (of > 0 ? fmt::format("{} %", 100 * done / of) : fmt::format("{}", done))
+              << std::endl;
+  }
+
   std::stop_source source_;
-  nextview::VisibilityProgress progress_;
+  nextview::WorkProgress progress_;
   std::jthread thread_;
 };
 

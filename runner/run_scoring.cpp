@@ -18,13 +18,13 @@ RunScoring::RunScoring(const RunSetup& setup, std::string cache, bool coverage)
 
 void RunScoring::start() {
   if (!setup_.scene) return;
-  near_work_.emplace([scene = setup_.scene, config = setup_.config](const std::stop_token& stop,
-                                                                    VisibilityProgress*) {
-    return NearSurface(scene->mesh(), grid_of(config), window_of(config), stop);
-  });
+  near_work_.emplace(
+      [scene = setup_.scene, config = setup_.config](const std::stop_token& stop, WorkProgress*) {
+        return NearSurface(scene->mesh(), grid_of(config), window_of(config), stop);
+      });
   if (!coverage_asked_for_) return;
   visible_work_.emplace([scene = setup_.scene, config = setup_.config, cache = cache_](
-                            const std::stop_token& stop, VisibilityProgress* progress) {
+                            const std::stop_token& stop, WorkProgress* progress) {
     return kept_visible_surface(cache, *scene, std::string(config.scene_digest),
                                 start_pose_of(config).position_m, visibility_of(config), stop,
                                 progress);

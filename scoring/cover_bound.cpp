@@ -6,6 +6,7 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "scoring/cover_prices.h"
 #include "scoring/greedy_cover.h"
 
 namespace nextview {
@@ -46,9 +47,9 @@ class Programme {
     std::vector<CoinBigIndex> begin = {0};
     std::vector<int> rows;
     for (const std::size_t pose : poses) {
-      for (const std::uint32_t voxel : sets_->covered_by(pose)) {
+      sets_->for_each_covered(pose, [&](std::uint32_t voxel) {
         if (row_of_voxel_[voxel] >= 0) rows.push_back(row_of_voxel_[voxel]);
-      }
+      });
       begin.push_back(static_cast<CoinBigIndex>(rows.size()));
     }
     const std::vector<double> elements(rows.size(), 1.0);
@@ -77,10 +78,10 @@ class Programme {
   double price(std::size_t pose) const {
     const double* dual = clp_.dualRowSolution();
     double sum = 0.0;
-    for (const std::uint32_t voxel : sets_->covered_by(pose)) {
+    sets_->for_each_covered(pose, [&](std::uint32_t voxel) {
       const int row = row_of_voxel_[voxel];
       if (row >= 0) sum += std::max(0.0, dual[row]);
-    }
+    });
     return sum;
   }
 
@@ -105,14 +106,15 @@ std::vector<std::size_t> dearest_of_alike(const std::vector<double>& prices, std
 }  // namespace
 
 double fewest_poses(const CoverSets& sets, std::span<const std::size_t> first, double share,
-                    const CoverBoundParameters& parameters, const std::stop_token& stop) {
+                    const CoverBoundParameters& parameters, const std::stop_token& stop,
+                    WorkProgress* progress) {
   std::vector<std::uint8_t> done(sets.weights.size(), 0);
   double to_cover = share * static_cast<double>(sets.total_weight());
   for (const std::size_t pose : first) {
-    for (const std::uint32_t voxel : sets.covered_by(pose)) {
+    sets.for_each_covered(pose, [&](std::uint32_t voxel) {
       if (done[voxel] == 0) to_cover -= static_cast<double>(sets.weights[voxel]);
       done[voxel] = 1;
-    }
+    });
   }
   if (to_cover <= 0.0) return 0.0;
   std::vector<std::size_t> added = greedy_cover(sets, first, share, stop);
@@ -121,12 +123,18 @@ double fewest_poses(const CoverSets& sets, std::span<const std::size_t> first, d
     throw std::invalid_argument("the poses do not cover the share that was asked for");
   }
   added.erase(added.begin(), added.begin() + static_cast<std::ptrdiff_t>(first.size()));
+  const auto rows = static_cast<std::size_t>(std::count(done.begin(), done.end(), 0));
+  if (rows > parameters.most_voxels) {
+    return bound_by_prices(sets, done, to_cover, parameters.prices, stop, progress);
+  }
 
   Programme programme(sets, done, to_cover);
   std::vector<std::uint8_t> is_in(sets.poses(), 0);
   std::vector<double> prices(sets.poses());
   double bound = 0.0;
+  if (progress != nullptr) progress->begin("bound on views, in rounds", 0);
   for (int round = 0; round < parameters.most_rounds && !stop.stop_requested(); ++round) {
+    if (progress != nullptr) progress->done = round;
     programme.add(added);
     for (const std::size_t pose : added) is_in[pose] = 1;
     const double value = programme.solve();

@@ -13,14 +13,14 @@ class Covered {
 
   std::int64_t gain_of(std::size_t pose) const {
     std::int64_t gain = 0;
-    for (const std::uint32_t voxel : sets_->covered_by(pose)) {
+    sets_->for_each_covered(pose, [&](std::uint32_t voxel) {
       if (covered_[voxel] == 0) gain += sets_->weights[voxel];
-    }
+    });
     return gain;
   }
   void take(std::size_t pose) {
     weight_ += gain_of(pose);
-    for (const std::uint32_t voxel : sets_->covered_by(pose)) covered_[voxel] = 1;
+    sets_->for_each_covered(pose, [&](std::uint32_t voxel) { covered_[voxel] = 1; });
   }
   std::int64_t weight() const { return weight_; }
 

@@ -111,6 +111,7 @@ class CoverFinder {
         covered.push_back(static_cast<std::uint32_t>(number));
       }
     }
+    std::sort(covered.begin(), covered.end());
     return covered;
   }
 
@@ -132,7 +133,7 @@ void PoseParameters::check() const { bounds::kBoundSpacing.require(spacing_m); }
 PoseCover cover_of_poses(const Scene& scene, const SensorPose& start,
                          const std::vector<Eigen::Vector3d>& reachable,
                          const VisibleSurface& surface, const PoseParameters& parameters,
-                         const std::stop_token& stop, VisibilityProgress* progress) {
+                         const std::stop_token& stop, WorkProgress* progress) {
   parameters.check();
   PoseCover cover;
   cover.poses.push_back(start);
@@ -146,10 +147,9 @@ PoseCover cover_of_poses(const Scene& scene, const SensorPose& start,
   cover.sets.weights = voxels.weights();
   cover.nearest_m.assign(voxels.weights().size(), std::numeric_limits<double>::infinity());
 
-  VisibilityProgress unwatched;
+  WorkProgress unwatched;
   if (progress == nullptr) progress = &unwatched;
-  progress->done = 0;
-  progress->of = static_cast<std::int64_t>(cover.poses.size());
+  progress->begin("scans from all poses", static_cast<std::int64_t>(cover.poses.size()));
   const RayTable rays = make_ray_table(parameters.sensor);
   constexpr std::size_t kPosesAtATime = 8192;
   std::vector<std::vector<std::uint32_t>> covered;
@@ -171,9 +171,9 @@ PoseCover cover_of_poses(const Scene& scene, const SensorPose& start,
       }
       cover.sets.add_pose(covered[i]);
     }
-    if (cover.sets.voxels.size() > parameters.most_entries) {
+    if (cover.sets.bytes() > parameters.most_bytes) {
       throw std::invalid_argument(
-          "the scene holds too many poses to look at: give a larger spacing");
+          "the scene holds too many poses to look at: give a larger --bound-spacing");
     }
   }
   return cover;

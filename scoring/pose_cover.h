@@ -19,7 +19,7 @@ struct PoseParameters {
   VoxelGrid grid;           ///< of the map that is to be filled
   double spacing_m = 0.40;  ///< of positions
   int subdivisions = 2;     ///< of the icosahedron whose faces are the orientations: 320
-  std::size_t most_entries = 1'000'000'000;  ///< pairs of pose and voxel, 4 bytes each
+  std::size_t most_bytes = 8'000'000'000;  ///< of what they cover, which stays in memory
 
   /// @throws std::invalid_argument naming the parameter that cannot be
   void check() const;
@@ -40,6 +40,6 @@ struct PoseCover {
 PoseCover cover_of_poses(const Scene& scene, const SensorPose& start,
                          const std::vector<Eigen::Vector3d>& reachable,
                          const VisibleSurface& surface, const PoseParameters& parameters,
-                         const std::stop_token& stop = {}, VisibilityProgress* progress = nullptr);
+                         const std::stop_token& stop = {}, WorkProgress* progress = nullptr);
 
 }  // namespace nextview

@@ -62,27 +62,28 @@ bool clearly_hides(const TriangleMesh& mesh, std::uint32_t triangle, const Eigen
   return inside(a, b) && inside(b, c) && inside(c, a);
 }
 
-PositionTree::PositionTree(std::vector<Eigen::Vector3d> positions)
+PositionTree::PositionTree(std::vector<Eigen::Vector3d> positions, const std::stop_token& stop)
     : positions_(std::move(positions)) {
   if (positions_.empty()) throw std::invalid_argument("position tree: no positions");
   nodes_.reserve(2 * positions_.size() / kLeafPositions + 1);
-  build(0, static_cast<std::int32_t>(positions_.size()));
+  build(0, static_cast<std::int32_t>(positions_.size()), stop);
 }
 
-std::int32_t PositionTree::build(std::int32_t begin, std::int32_t end) {
+std::int32_t PositionTree::build(std::int32_t begin, std::int32_t end,
+                                 const std::stop_token& stop) {
   Node node;
   node.begin = begin;
   node.end = end;
   for (std::int32_t i = begin; i < end; ++i) node.box.extend(position_m(i));
-  if (node.size() > kLeafPositions) {
+  if (node.size() > kLeafPositions && !stop.stop_requested()) {
     Eigen::Index axis = 0;
     node.box.sizes().maxCoeff(&axis);
     const std::int32_t half = begin + node.size() / 2;
     std::nth_element(
         positions_.begin() + begin, positions_.begin() + half, positions_.begin() + end,
         [axis](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return a[axis] < b[axis]; });
-    node.left = build(begin, half);
-    node.right = build(half, end);
+    node.left = build(begin, half, stop);
+    node.right = build(half, end, stop);
   }
   const Eigen::Vector3d middle = node.box.center();
   const auto nearest =

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <optional>
+#include <stop_token>
 #include <unordered_map>
 #include <vector>
 
@@ -37,8 +38,9 @@ class PositionTree {
     std::int32_t size() const { return end - begin; }
   };
 
+  /// With stop requested it comes back incomplete, and is not to be searched.
   /// @throws std::invalid_argument when there are no positions
-  explicit PositionTree(std::vector<Eigen::Vector3d> positions);
+  explicit PositionTree(std::vector<Eigen::Vector3d> positions, const std::stop_token& stop = {});
 
   const Node& node(std::int32_t i) const { return nodes_[static_cast<std::size_t>(i)]; }
   std::int32_t root() const { return static_cast<std::int32_t>(nodes_.size()) - 1; }
@@ -48,7 +50,7 @@ class PositionTree {
   std::size_t size() const { return positions_.size(); }
 
  private:
-  std::int32_t build(std::int32_t begin, std::int32_t end);
+  std::int32_t build(std::int32_t begin, std::int32_t end, const std::stop_token& stop);
 
   std::vector<Eigen::Vector3d> positions_;  ///< those of a node in a row
   std::vector<Node> nodes_;                 ///< children before their parents

@@ -154,13 +154,15 @@ std::optional<Node> node_joined_by(const Eigen::Vector3d& start_m, Lattice& latt
 
 std::vector<Eigen::Vector3d> reachable_positions(const Scene& scene, const Eigen::Vector3d& start_m,
                                                  const ReachParameters& parameters,
-                                                 const std::stop_token& stop) {
+                                                 const std::stop_token& stop,
+                                                 WorkProgress* progress) {
   check(start_m, parameters);
   Lattice lattice(scene, parameters);
   const std::optional<Node> first = node_joined_by(start_m, lattice, parameters);
   if (!first) return {};
   std::vector<Node> nodes = {*first};
   lattice.set_reached(*first);
+  if (progress != nullptr) progress->begin("positions reached", 0);
   // Breadth first; the vector grows behind the one being looked at.
   for (std::size_t at = 0; at < nodes.size() && !stop.stop_requested(); ++at) {
     const Node from = nodes[at];
@@ -169,11 +171,13 @@ std::vector<Eigen::Vector3d> reachable_positions(const Scene& scene, const Eigen
       lattice.set_reached(to);
       nodes.push_back(to);
     });
+    if (progress != nullptr) progress->done = static_cast<std::int64_t>(nodes.size());
     if (static_cast<std::int64_t>(nodes.size()) > parameters.most_positions) {
       throw CoverageUnknown("the free space holds more than " +
                             std::to_string(parameters.most_positions) + " positions");
     }
   }
+  if (stop.stop_requested()) return {};
   std::sort(nodes.begin(), nodes.end(), [](const Node& a, const Node& b) {
     return std::tuple(a.z(), a.y(), a.x()) < std::tuple(b.z(), b.y(), b.x());
   });

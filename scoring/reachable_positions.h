@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "scene/scene.h"
+#include "scoring/work_progress.h"
 
 namespace nextview {
 
@@ -25,12 +26,13 @@ struct ReachParameters {
 /// the box that keep the clearance are joined to those of their 26 neighbours to which the straight
 /// piece keeps it too. What is returned is the whole connected part that the start joins, which is
 /// that of the nearest point it gets to in a straight free piece; so it is the same from every
-/// start in it. In a fixed order (by z, y, x); empty when the start joins nothing, and incomplete
-/// when stop is requested.
+/// start in it. In a fixed order (by z, y, x); empty when the start joins nothing, and when stop is
+/// requested.
 /// @throws std::invalid_argument unless the spacing is positive and the numbers are finite
 /// @throws CoverageUnknown for more than most_positions
 std::vector<Eigen::Vector3d> reachable_positions(const Scene& scene, const Eigen::Vector3d& start_m,
                                                  const ReachParameters& parameters,
-                                                 const std::stop_token& stop = {});
+                                                 const std::stop_token& stop = {},
+                                                 WorkProgress* progress = nullptr);
 
 }  // namespace nextview

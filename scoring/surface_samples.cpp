@@ -48,7 +48,8 @@ std::uint64_t curve_position(const Eigen::Vector3f& point_m, const Eigen::Vector
 
 }  // namespace
 
-std::vector<Eigen::Vector3f> sample_surface(const TriangleMesh& mesh, double samples_per_m2) {
+std::vector<Eigen::Vector3f> sample_surface(const TriangleMesh& mesh, double samples_per_m2,
+                                            const std::stop_token& stop) {
   if (!(samples_per_m2 > 0.0) || !std::isfinite(samples_per_m2)) {
     throw std::invalid_argument("surface samples: samples per m2 must be positive and finite");
   }
@@ -57,6 +58,7 @@ std::vector<Eigen::Vector3f> sample_surface(const TriangleMesh& mesh, double sam
   R2Sequence sequence;
   double owed = 0.0;
   for (std::size_t triangle = 0; triangle < mesh.triangles.size(); ++triangle) {
+    if (stop.stop_requested()) return {};
     const Eigen::Vector3d a = mesh.corner_m(triangle, 0);
     const Eigen::Vector3d ab = mesh.corner_m(triangle, 1) - a;
     const Eigen::Vector3d ac = mesh.corner_m(triangle, 2) - a;

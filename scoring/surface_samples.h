@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <stop_token>
 #include <vector>
 
 #include "scene/triangle_mesh.h"
@@ -15,6 +16,7 @@ namespace nextview {
 /// are rounded to float, the precision in which scenes are cast. The points come sorted along a
 /// space-filling curve, so that consecutive ones are near each other.
 /// @throws std::invalid_argument unless samples_per_m2 is positive and finite
-std::vector<Eigen::Vector3f> sample_surface(const TriangleMesh& mesh, double samples_per_m2);
+std::vector<Eigen::Vector3f> sample_surface(const TriangleMesh& mesh, double samples_per_m2,
+                                            const std::stop_token& stop = {});
 
 }  // namespace nextview

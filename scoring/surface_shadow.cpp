@@ -32,13 +32,15 @@ std::vector<std::uint32_t> merged_vertices(const TriangleMesh& mesh) {
 
 }  // namespace
 
-TriangleNeighbours::TriangleNeighbours(const TriangleMesh& mesh) : mesh_(&mesh) {
+TriangleNeighbours::TriangleNeighbours(const TriangleMesh& mesh, const std::stop_token& stop)
+    : mesh_(&mesh) {
   struct Edge {
     std::uint32_t low;
     std::uint32_t high;
     std::uint32_t of_triangle;  // 3 triangle + edge
   };
   const std::vector<std::uint32_t> merged = merged_vertices(mesh);
+  if (stop.stop_requested()) return;
   std::vector<Edge> edges;
   edges.reserve(3 * mesh.triangles.size());
   for (std::uint32_t t = 0; t < mesh.triangles.size(); ++t) {
@@ -51,6 +53,7 @@ TriangleNeighbours::TriangleNeighbours(const TriangleMesh& mesh) : mesh_(&mesh) 
   std::sort(edges.begin(), edges.end(), [](const Edge& a, const Edge& b) {
     return std::tie(a.low, a.high, a.of_triangle) < std::tie(b.low, b.high, b.of_triangle);
   });
+  if (stop.stop_requested()) return;
   run_of_edge_.resize(edges.size());
   for (std::size_t i = 0; i < edges.size(); ++i) {
     if (i == 0 || edges[i].low != edges[i - 1].low || edges[i].high != edges[i - 1].high) {

@@ -3,6 +3,7 @@
 #include <Eigen/Geometry>
 #include <cstdint>
 #include <memory>
+#include <stop_token>
 #include <vector>
 
 #include "scene/triangle_mesh.h"
@@ -18,7 +19,8 @@ class TriangleNeighbours {
     std::uint32_t triangle;
     std::uint32_t opposite;  ///< the vertex that is not on the edge
   };
-  explicit TriangleNeighbours(const TriangleMesh& mesh);
+  /// With stop requested it comes back incomplete, and is not to be asked.
+  explicit TriangleNeighbours(const TriangleMesh& mesh, const std::stop_token& stop = {});
 
   const TriangleMesh& mesh() const { return *mesh_; }
 

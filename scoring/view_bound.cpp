@@ -42,9 +42,9 @@ std::string key_of(const std::string& scene_digest, const ViewBoundQuestion& que
 }
 
 double length_of_m(const LatticePaths& paths, const PoseCover& cover,
-                   const std::vector<std::size_t>& taken) {
+                   const std::vector<std::size_t>& taken, const std::stop_token& stop) {
   double length_m = 0.0;
-  for (std::size_t i = 1; i < taken.size(); ++i) {
+  for (std::size_t i = 1; i < taken.size() && !stop.stop_requested(); ++i) {
     length_m +=
         paths.length_m(cover.poses[taken[i - 1]].position_m, cover.poses[taken[i]].position_m);
   }
@@ -71,7 +71,7 @@ double distance_to_cover_m(const CoverSets& sets, const std::vector<double>& nea
 std::vector<ViewBound> view_bounds(const std::string& cache_folder, const Scene& scene,
                                    const std::string& scene_digest,
                                    const ViewBoundQuestion& question, const std::stop_token& stop,
-                                   VisibilityProgress* progress) {
+                                   WorkProgress* progress) {
   const VisibleSurface surface =
       kept_visible_surface(cache_folder, scene, scene_digest, question.start.position_m,
                            question.visibility, stop, progress);
@@ -86,14 +86,15 @@ std::vector<ViewBound> view_bounds(const std::string& cache_folder, const Scene&
   const std::size_t first[] = {0};
   std::vector<ViewBound> bounds;
   for (const double share : question.shares) {
+    if (progress != nullptr) progress->begin("greedy", 0);
     ViewBound& bound = bounds.emplace_back();
     bound.share = share;
     const std::vector<std::size_t> greedy = greedy_cover(cover.sets, first, share, stop);
     bound.reached = share_covered(cover.sets, greedy) >= share;
     if (stop.stop_requested() || !bound.reached) continue;
     bound.greedy_views = static_cast<int>(greedy.size());
-    bound.greedy_m = length_of_m(paths, cover, greedy);
-    const double fewest = fewest_poses(cover.sets, first, share, {}, stop);
+    bound.greedy_m = length_of_m(paths, cover, greedy, stop);
+    const double fewest = fewest_poses(cover.sets, first, share, {}, stop, progress);
     bound.fewest_views = 1 + static_cast<int>(std::ceil(fewest - 1e-6));
     bound.shortest_m = distance_to_cover_m(cover.sets, cover.nearest_m, share);
   }

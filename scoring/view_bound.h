@@ -38,7 +38,7 @@ std::vector<ViewBound> view_bounds(const std::string& cache_folder, const Scene&
                                    const std::string& scene_digest,
                                    const ViewBoundQuestion& question,
                                    const std::stop_token& stop = {},
-                                   VisibilityProgress* progress = nullptr);
+                                   WorkProgress* progress = nullptr);
 
 /// The bounds if they have been worked out before and kept.
 std::optional<std::vector<ViewBound>> kept_view_bounds(const std::string& cache_folder,

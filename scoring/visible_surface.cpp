@@ -20,28 +20,31 @@ struct Question {
 };
 
 Question question_of(const Scene& scene, const Eigen::Vector3d& start_m,
-                     const VisibilityParameters& parameters, const std::stop_token& stop) {
+                     const VisibilityParameters& parameters, const std::stop_token& stop,
+                     WorkProgress* progress) {
   Question question;
-  question.positions_m = reachable_positions(scene, start_m, parameters.reach, stop);
+  question.positions_m = reachable_positions(scene, start_m, parameters.reach, stop, progress);
+  if (stop.stop_requested()) return question;
   if (question.positions_m.empty()) {
     throw CoverageUnknown("nothing can be reached from the start at the run's clearance");
   }
   const double most_per_m2 = static_cast<double>(parameters.most_samples) / scene.mesh().area_m2();
   question.samples_per_m2 = std::min(parameters.samples_per_m2, most_per_m2);
-  question.samples_m = sample_surface(scene.mesh(), question.samples_per_m2);
+  question.samples_m = sample_surface(scene.mesh(), question.samples_per_m2, stop);
   return question;
 }
 
 /// Tells of each sample whether it can be seen from the positions, on all cores.
 std::vector<std::uint8_t> seen_samples(const Scene& scene, const Question& question,
                                        double range_max_m, const std::stop_token& stop,
-                                       VisibilityProgress& progress) {
+                                       WorkProgress& progress) {
   constexpr std::size_t kSamplesAtATime = 1024;  // neighbours, who can learn from each other
   const std::vector<Eigen::Vector3f>& samples = question.samples_m;
-  const TriangleNeighbours neighbours(scene.mesh());
-  const PositionTree tree(question.positions_m);
   std::vector<std::uint8_t> seen(samples.size(), 0);
-  progress.of = static_cast<std::int64_t>(samples.size());
+  const TriangleNeighbours neighbours(scene.mesh(), stop);
+  const PositionTree tree(question.positions_m, stop);
+  if (stop.stop_requested()) return seen;
+  progress.begin("surface that can be seen", static_cast<std::int64_t>(samples.size()));
   std::atomic<std::size_t> next = 0;
   on_all_cores([&] {
     PositionSearch search(scene, neighbours, tree, range_max_m);
@@ -114,19 +117,19 @@ std::optional<VisibleSurface> kept_answer(const std::string& folder, const std::
 
 VisibleSurface visible_surface(const Scene& scene, const Eigen::Vector3d& start_m,
                                const VisibilityParameters& parameters, const std::stop_token& stop,
-                               VisibilityProgress* progress) {
+                               WorkProgress* progress) {
   return kept_visible_surface({}, scene, {}, start_m, parameters, stop, progress);
 }
 
 VisibleSurface kept_visible_surface(const std::string& folder, const Scene& scene,
                                     const std::string& scene_digest, const Eigen::Vector3d& start_m,
                                     const VisibilityParameters& parameters,
-                                    const std::stop_token& stop, VisibilityProgress* progress) {
-  const Question question = question_of(scene, start_m, parameters, stop);
+                                    const std::stop_token& stop, WorkProgress* progress) {
+  const Question question = question_of(scene, start_m, parameters, stop, progress);
   if (stop.stop_requested()) return {};
   const std::string key = folder.empty() ? "" : key_of(scene_digest, question, parameters);
   if (const auto kept = kept_answer(folder, key, question)) return *kept;
-  VisibilityProgress unwatched;
+  WorkProgress unwatched;
   const std::vector<std::uint8_t> seen =
       seen_samples(scene, question, parameters.range_max_m, stop, progress ? *progress : unwatched);
   if (!folder.empty() && !stop.stop_requested()) keep(folder, key, packed(seen));
@@ -137,7 +140,7 @@ std::optional<VisibleSurface> visible_surface_if_kept(const std::string& folder,
                                                       const std::string& scene_digest,
                                                       const Eigen::Vector3d& start_m,
                                                       const VisibilityParameters& parameters) {
-  const Question question = question_of(scene, start_m, parameters, {});
+  const Question question = question_of(scene, start_m, parameters, {}, nullptr);
   return kept_answer(folder, key_of(scene_digest, question, parameters), question);
 }
 

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <atomic>
 #include <cstdint>
 #include <optional>
 #include <stop_token>
@@ -10,6 +9,7 @@
 
 #include "scene/scene.h"
 #include "scoring/reachable_positions.h"
+#include "scoring/work_progress.h"
 
 namespace nextview {
 
@@ -32,12 +32,6 @@ struct VisibleSurface {
   double area_m2() const { return static_cast<double>(points_m.size()) / samples_per_m2; }
 };
 
-/// How far the work has come; may be read by another thread.
-struct VisibilityProgress {
-  std::atomic<std::int64_t> done = 0;  ///< samples looked at
-  std::atomic<std::int64_t> of = 0;    ///< 0 before there are any
-};
-
 /// Samples of the surface that can be seen in range from a position that can be reached from the
 /// start: independent of anything scanned, and of where in the same free space the start lies.
 ///
@@ -46,8 +40,7 @@ struct VisibilityProgress {
 /// @throws CoverageUnknown when no position can be reached, or too many
 VisibleSurface visible_surface(const Scene& scene, const Eigen::Vector3d& start_m,
                                const VisibilityParameters& parameters,
-                               const std::stop_token& stop = {},
-                               VisibilityProgress* progress = nullptr);
+                               const std::stop_token& stop = {}, WorkProgress* progress = nullptr);
 
 /// The same, kept in a folder under the scene's digest, the parameters and the positions reached,
 /// and read from there the next time. What is kept but damaged is worked out again and replaced. An
@@ -57,7 +50,7 @@ VisibleSurface kept_visible_surface(const std::string& folder, const Scene& scen
                                     const std::string& scene_digest, const Eigen::Vector3d& start_m,
                                     const VisibilityParameters& parameters,
                                     const std::stop_token& stop = {},
-                                    VisibilityProgress* progress = nullptr);
+                                    WorkProgress* progress = nullptr);
 
 /// That of the function above if it has been kept; else nothing. Finds the positions, no more.
 /// @throws CoverageUnknown as above

@@ -11,7 +11,7 @@ namespace {
 constexpr std::chrono::milliseconds kLong{60000};
 
 TEST(BackgroundScoring, GivesWhatWasWorkedOutOnce) {
-  BackgroundScoring<VisibleSurface> scoring([](const std::stop_token&, VisibilityProgress*) {
+  BackgroundScoring<VisibleSurface> scoring([](const std::stop_token&, WorkProgress*) {
     VisibleSurface surface;
     surface.samples = 7;
     return surface;
@@ -26,7 +26,7 @@ TEST(BackgroundScoring, GivesWhatWasWorkedOutOnce) {
 
 TEST(BackgroundScoring, ThatFailsSaysWhyAndHarmsNobody) {
   BackgroundScoring<VisibleSurface> scoring(
-      [](const std::stop_token&, VisibilityProgress*) -> VisibleSurface {
+      [](const std::stop_token&, WorkProgress*) -> VisibleSurface {
         throw std::runtime_error("no room for the positions");
       });
   EXPECT_FALSE(scoring.take(kLong));
@@ -36,7 +36,7 @@ TEST(BackgroundScoring, ThatFailsSaysWhyAndHarmsNobody) {
 
 TEST(BackgroundScoring, SurvivesWhatIsNoException) {
   BackgroundScoring<VisibleSurface> scoring(
-      [](const std::stop_token&, VisibilityProgress*) -> VisibleSurface { throw 1; });
+      [](const std::stop_token&, WorkProgress*) -> VisibleSurface { throw 1; });
   EXPECT_FALSE(scoring.take(kLong));
   EXPECT_EQ(scoring.failure(), "it could not be worked out");
 }
@@ -44,7 +44,7 @@ TEST(BackgroundScoring, SurvivesWhatIsNoException) {
 TEST(BackgroundScoring, EndsWhenAskedToAndSaysHowFarItIs) {
   std::atomic<bool> half_done = false;
   BackgroundScoring<VisibleSurface> scoring(
-      [&half_done](const std::stop_token& stop, VisibilityProgress* progress) {
+      [&half_done](const std::stop_token& stop, WorkProgress* progress) {
         progress->of = 40;
         progress->done = 20;
         half_done = true;
@@ -65,7 +65,7 @@ TEST(BackgroundScoring, IsNotWaitedForWhenItIsDropped) {
   std::atomic<bool> stopped = false;
   {
     const BackgroundScoring<VisibleSurface> scoring(
-        [&stopped](const std::stop_token& stop, VisibilityProgress*) {
+        [&stopped](const std::stop_token& stop, WorkProgress*) {
           while (!stop.stop_requested()) std::this_thread::yield();
           stopped = true;
           return VisibleSurface{};

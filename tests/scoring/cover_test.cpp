@@ -18,6 +18,26 @@ CoverSets sets_of(std::vector<std::uint32_t> weights,
   return sets;
 }
 
+TEST(CoverSets, KeepWhatTheyWereGiven) {
+  CoverSets sets;
+  std::vector<std::vector<std::uint32_t>> poses = {
+      {}, {0}, {127}, {0, 127, 128, 255, 16383, 16384, 2097152, 268435456, 4294967295}};
+  RandomStream random(7, 0, 0, RandomPurpose::InitialSimplex);
+  while (poses.size() < 20'000) {  // more than fit into one part
+    std::vector<std::uint32_t>& covered = poses.emplace_back();
+    std::uint32_t voxel = 0;
+    for (std::uint64_t left = random.below(6); left > 0; --left) {
+      voxel += 1 + static_cast<std::uint32_t>(random.below(40'000));
+      covered.push_back(voxel);
+    }
+  }
+  for (const auto& covered : poses) sets.add_pose(covered);
+  ASSERT_EQ(sets.poses(), poses.size());
+  for (std::size_t pose = 0; pose < poses.size(); ++pose) {
+    ASSERT_EQ(sets.covered_by(pose), poses[pose]) << pose;
+  }
+}
+
 const std::size_t kNone[] = {0};
 const std::span<const std::size_t> kNoFirst(kNone, 0);
 
@@ -51,6 +71,14 @@ TEST(FewestPoses, TakesTheBestPartWhereSomeMayBeLeft) {
   EXPECT_NEAR(fewest_poses(sets, kNoFirst, 0.75), 1.0 + 2.0 / 3.0, 1e-6);
 }
 
+TEST(FewestPoses, IsNearlyTheSameByPrices) {
+  const CoverBoundParameters by_prices{.most_voxels = 0};
+  const CoverSets triangle = sets_of({1, 1, 1}, {{0, 1}, {1, 2}, {2, 0}});
+  EXPECT_NEAR(fewest_poses(triangle, kNoFirst, 1.0, by_prices), 1.5, 0.01);
+  const CoverSets parts = sets_of({4, 3, 1}, {{0}, {1}, {2}});
+  EXPECT_NEAR(fewest_poses(parts, kNoFirst, 0.75, by_prices), 1.0 + 2.0 / 3.0, 0.05);
+}
+
 TEST(FewestPoses, RefusesAShareThatPosesDoNotReach) {
   EXPECT_THROW(fewest_poses(sets_of({1, 1}, {{0}}), kNoFirst, 1.0), std::invalid_argument);
 }
@@ -70,6 +98,7 @@ std::size_t fewest_by_trying(const CoverSets& sets, double share) {
 
 TEST(FewestPoses, IsNeverAboveTheFewestThereAreAndTheGreedyNeverBelow) {
   int tight = 0;
+  int close = 0;
   int cases = 0;
   for (int world = 0; world < 200; ++world) {
     RandomStream random(world, 0, 0, RandomPurpose::InitialSimplex);
@@ -94,9 +123,13 @@ TEST(FewestPoses, IsNeverAboveTheFewestThereAreAndTheGreedyNeverBelow) {
     EXPECT_LE(bound, static_cast<double>(fewest) + 1e-6) << world;
     EXPECT_GE(greedy.size(), fewest) << world;
     if (std::ceil(bound - 1e-6) == static_cast<double>(fewest)) ++tight;
+    const double by_prices = fewest_poses(sets, kNoFirst, share, {.most_voxels = 0});
+    EXPECT_LE(by_prices, static_cast<double>(fewest) + 1e-6) << world;
+    if (by_prices > 0.97 * bound) ++close;
   }
   EXPECT_GT(cases, 100);
   EXPECT_GT(tight, cases / 2) << "of " << cases;
+  EXPECT_GT(close, cases * 4 / 5) << "of " << cases;
 }
 
 TEST(DistanceToCover, IsThatOfTheFarthestVoxelThatIsNeeded) {

@@ -6,10 +6,13 @@
 #include <ctime>
 #include <filesystem>
 #include <fstream>
+#include <string_view>
 #include <thread>
 
 #include "scene/scene_catalog.h"
 #include "scoring/coverage_unknown.h"
+#include "scoring/position_tree.h"
+#include "scoring/surface_samples.h"
 #include "tests/scoring/room_mesh.h"
 
 namespace nextview {
@@ -98,6 +101,18 @@ double processor_time_s() {
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
+TEST(VisibleSurface, LooksAtNothingOnceItIsToStop) {
+  const Scene scene = hall();
+  std::stop_source source;
+  source.request_stop();
+  WorkProgress progress;
+  visible_surface(scene, {0.7, 0.7, 1.2}, all_of({30.0, 30.0, 3.0}), source.get_token(), &progress);
+  EXPECT_EQ(progress.of, 0);
+  EXPECT_TRUE(sample_surface(scene.mesh(), 400.0, source.get_token()).empty());
+  const std::vector<Eigen::Vector3d> positions(1000, Eigen::Vector3d::Zero());
+  EXPECT_EQ(PositionTree(positions, source.get_token()).root(), 0) << "a tree of one node";
+}
+
 TEST(VisibleSurface, EndsSoonWhenItIsToStop) {
   const Scene scene = hall();
   const VisibilityParameters parameters = all_of({30.0, 30.0, 3.0});
@@ -131,10 +146,10 @@ class KeptVisibleSurface : public testing::Test {
   std::pair<VisibleSurface, bool> ask(const VisibilityParameters& parameters,
                                       const std::string& digest = "digest",
                                       const Eigen::Vector3d& start_m = {0.7, 0.7, 1.2}) {
-    VisibilityProgress progress;
+    WorkProgress progress;
     VisibleSurface surface = kept_visible_surface(folder_.string(), Scene(mesh_), digest, start_m,
                                                   parameters, {}, &progress);
-    return {surface, progress.done > 0};
+    return {surface, std::string_view(progress.stage) == "surface that can be seen"};
   }
   std::vector<fs::path> files() const {
     std::vector<fs::path> found;
