@@ -36,7 +36,8 @@ void show_events(const nextview::RunLog& log) {
 void show_unchecked(const std::vector<nextview::UncheckedFields>& unchecked,
                     const nextview::ReplayReport& report) {
   if (!report.sealed) {
-    std::cout << "not checked, as the log bears no seal:\n";
+    std::cout << "not checked, as the log bears no seal:\n"
+                 "  every event (nothing depends on it): when it was received\n";
   } else if (report.exit_status() == 0) {
     std::cout << "not worked out again, but what it was when the log was sealed:\n";
   } else {

@@ -39,4 +39,31 @@ bool change(Value& value, Change by) {
   }
 }
 
+/// Makes a value one of some others that its field may well have; false when there are no more.
+template <class Value>
+bool set_other(Value& value, int which) {
+  if constexpr (std::is_floating_point_v<Value>) {
+    const Value others[] = {std::nextafter(value, Value(1e9)), Value(1), Value(0), 2 * value};
+    if (which >= std::ssize(others)) return false;
+    value = others[which];
+    return true;
+  } else if constexpr (std::is_integral_v<Value>) {
+    const int others[] = {static_cast<int>(value) + 1, static_cast<int>(value) - 1, 1, 2, 3, 80};
+    if (which >= std::ssize(others)) return false;
+    value = static_cast<Value>(others[which]);
+    return true;
+  } else if constexpr (std::is_same_v<Value, std::string>) {
+    constexpr const char* kOthers[] = {"x", "y", "z"};
+    if (which >= std::ssize(kOthers)) return false;
+    value = kOthers[which];
+    return true;
+  } else {
+    constexpr int kEach = 6;
+    const int element = which / kEach;
+    if (element >= std::ssize(value)) return false;
+    set_other(value[static_cast<std::size_t>(element)], which % kEach);
+    return true;
+  }
+}
+
 }  // namespace nextview
