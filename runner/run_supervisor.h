@@ -59,6 +59,7 @@ class RunSupervisor {
   bool config_recorded(AskTimer& reminder);
   void start_scoring();
   void watch();
+  bool take_all_there_is();
   bool ask_for_missed();
   void complete_log();
   void collect_statuses();
