@@ -15,8 +15,9 @@ constexpr std::size_t kRangesPerRequest = 128;
 constexpr int kPartsAskedInVain = 8;
 /// So many messages asked for are remembered to tell how long answers take.
 constexpr std::size_t kAskedRemembered = 256;
-/// Of a message in many parts, which take a while to send: by whoever got none of them.
-constexpr std::chrono::milliseconds kWholeOnceWithin{50};
+/// So much longer is a part of a message not sent again: many parts take a while to send, and who
+/// waits for them asks meanwhile for what is on its way already.
+constexpr int kPartsOnceWithin = 10;
 
 }  // namespace
 
@@ -165,7 +166,7 @@ void Bus::answer(const request_t& request) {
     found = asked_for(first);
     const bool in_parts = found && asked_for(std::next(first)) && std::next(first)->first.part > 0;
     const auto once_within =
-        in_parts ? std::min(kWholeOnceWithin, 10 * answer_once_within_) : answer_once_within_;
+        in_parts ? kPartsOnceWithin * answer_once_within_ : answer_once_within_;
     const auto now = Clock::now();
     for (auto message = first; asked_for(message); ++message) {
       send_again(channel->first, message->second, now, once_within);
@@ -186,7 +187,7 @@ void Bus::answer_parts(const parts_request_t& request) {
                answers.lower_bound({request.view, request.attempt, request.first_wanted_part[i]});
            message != answers.end() && message->first <= last; ++message) {
         found = true;
-        send_again(channel->first, message->second, now, answer_once_within_);
+        send_again(channel->first, message->second, now, kPartsOnceWithin * answer_once_within_);
       }
     }
   }

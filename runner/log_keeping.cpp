@@ -25,7 +25,9 @@ void LogKeeping::ask_for_missed(const RunLog& log, Bus& bus, const HeardRun& hea
   constexpr std::size_t kAtATime = 16;
   const RunRecord& logged = log.record();
   std::set<MissingMessage> missed;
-  for (int view = logged.whole_views() + 1; view < heard.record.latest_view(); ++view) {
+  // A recorder that is behind will still write it; one that has gone on to a later view has missed
+  // it, and would only be farther behind if it were sent again before.
+  for (int view = logged.whole_views() + 1; view < logged.latest_view(); ++view) {
     const auto of_view = logged.missing_of_view(view);
     missed.insert(of_view.begin(), of_view.end());
     if (missed.size() >= kAtATime) break;

@@ -50,6 +50,9 @@ bool all_of(const std::set<std::string>& roles, const std::set<std::string>& hea
 /// How long something must be missing before it is asked for, where nobody waits for it to go on.
 constexpr milliseconds kLeastMissed{50};
 
+/// Within this time the recorder writes the next message, if it has one to write.
+constexpr milliseconds kLeastWritten{20};
+
 /// Waits from first on up to two seconds.
 AskTimer reminder_after(milliseconds first) { return AskTimer(first, milliseconds(2000)); }
 
@@ -250,12 +253,21 @@ void RunSupervisor::watch() {
     log_mending_.step(*log_, *bus_, heard_);
     log_keeping_.step(*log_, *bus_, heard_);
     make_rows();
-    if (!reminder.due()) continue;
+    if (!reminder.due() || !take_all_there_is()) continue;
     if (ask_for_missed()) {
       reminder.restart(std::max(kLeastMissed, 2 * bus_->response_time().timeout()));
     }
   }
   make_rows();
+}
+
+/// @return whether nothing waits to be taken any more: whoever is behind has not missed anything
+bool RunSupervisor::take_all_there_is() {
+  constexpr int kAtATime = 1000;
+  int taken = 0;
+  while (taken < kAtATime && bus_->handle(milliseconds(0))) ++taken;
+  make_rows();
+  return taken < kAtATime;
 }
 
 /// @return whether something has come since
@@ -284,16 +296,18 @@ void RunSupervisor::complete_log() {
   AskTimer reminder = reminder_after(milliseconds(20));
   heard_.last_progress = Clock::now();
   std::vector<MissingMessage> had_missing;
+  std::int64_t read = 0;
   for (;;) {
     log_->read_on();
     const std::vector<MissingMessage> missing = log_->record().missing();
     if (missing.empty()) return;
     // What is asked for is recorded too: the log grows, and is none the better for it.
-    if (missing != had_missing) {
-      heard_.last_progress = Clock::now();
-      reminder.restart(bus_->response_time().timeout());
-    }
+    if (missing != had_missing) heard_.last_progress = Clock::now();
     had_missing = missing;
+    // A recorder that still writes is behind, and may not have missed anything.
+    if (const std::int64_t position = log_->position(); position != std::exchange(read, position)) {
+      reminder.restart(std::max(kLeastWritten, bus_->response_time().timeout()));
+    }
     if (reminder.due()) {
       for (const MissingMessage& message : missing) {
         if (!publish_again(*bus_, message, heard_.record)) {

@@ -57,6 +57,7 @@ class RunSupervisor {
   bool recording();
   bool config_recorded(AskTimer& reminder);
   void watch();
+  bool take_all_there_is();
   bool ask_for_missed();
   void complete_log();
   void collect_statuses();

@@ -47,8 +47,12 @@ class LossyRuns(unittest.TestCase):
     def tearDownClass(cls):
         cls.kept.cleanup()
 
-    def run_whole(self, name, options, before=(), environment=None):
-        out = self.folder / name
+    def new_folder(self):
+        self.runs = getattr(self, "runs", 0) + 1
+        return self.folder / f"{self._testMethodName}-{self.runs}"
+
+    def run_whole(self, options, before=(), environment=None):
+        out = self.new_folder()
         ended = subprocess.run([*before, PROGRAMS / "nextview_run", *options, "--out", out],
                                env={**os.environ, **(environment or {})}, stdout=subprocess.PIPE,
                                stderr=subprocess.STDOUT, text=True)
@@ -58,7 +62,7 @@ class LossyRuns(unittest.TestCase):
     def expect_as_undisturbed(self, folder, options):
         key = tuple(options)
         if key not in self.undisturbed:
-            self.undisturbed[key] = self.run_whole(f"undisturbed-{len(self.undisturbed)}", options)
+            self.undisturbed[key] = self.run_whole(options)
         for heading in ("map_digest", "x_m", "y_m", "z_m"):
             self.assertEqual(column(folder, heading), column(self.undisturbed[key], heading), heading)
         replay = subprocess.run([PROGRAMS / "nextview_replay", folder, "--planner"], capture_output=True, text=True)
@@ -69,7 +73,7 @@ class OfEveryProgram(LossyRuns):
     """Each program of a run, the recorder included, loses datagrams of its own."""
 
     def expect_unharmed(self, lost, options):
-        run = self.run_whole(f"run-{lost}-{len(options)}", options, environment={
+        run = self.run_whole(options, environment={
             "LD_PRELOAD": str(FAULTS), "NEXTVIEW_FAULTS": f"{lost} 0.05 0.05 7"})
         self.expect_as_undisturbed(run, options)
 
@@ -96,7 +100,7 @@ class OfAHost(LossyRuns):
                    "nft add chain inet t c '{type filter hook input priority 0;}' && "
                    f"nft add rule inet t c ip protocol udp numgen random mod 100 '<' {lost_percent} drop && "
                    "exec \"$@\"")
-        run = self.run_whole(f"run-{lost_percent}-{len(options)}", options,
+        run = self.run_whole(options,
                              before=["unshare", "--net", "sh", "-c", command, "sh"])
         self.expect_as_undisturbed(run, options)
 
@@ -165,8 +169,8 @@ class OfFourHosts(LossyRuns):
     ROLES = ("base_sim", "sensor_sim", "mapper")
     URL = "udpm://239.255.76.67:7667?ttl=1&recv_buf_size=4194304"
 
-    def run_on_hosts(self, name, options, lost_percent):
-        out = self.folder / name
+    def run_on_hosts(self, options, lost_percent):
+        out = self.new_folder()
         hosts = Hosts(["planner", *self.ROLES], lost_percent)
         try:
             run = hosts.start("planner", [PROGRAMS / "nextview_run", *options, "--elsewhere", ",".join(self.ROLES),
@@ -178,6 +182,7 @@ class OfFourHosts(LossyRuns):
                 if by_hand := re.match(r"start it by hand: (nextview_(\w+) .*)", line):
                     program, *arguments = shlex.split(by_hand[1])
                     hosts.start(by_hand[2], [PROGRAMS / program, *arguments])
+            run.stdout.close()
             self.assertEqual(run.wait(), 0, "".join(words))
         finally:
             hosts.close()
@@ -185,11 +190,11 @@ class OfFourHosts(LossyRuns):
 
     def test_the_papers_sensor(self):
         options = [*PAPER, "--views", "20"]
-        self.expect_as_undisturbed(self.run_on_hosts("paper", options, 5), options)
+        self.expect_as_undisturbed(self.run_on_hosts(options, 5), options)
 
     def test_a_sensor_of_250_000_points(self):
         options = [*PANORAMA, "--views", "4"]
-        self.expect_as_undisturbed(self.run_on_hosts("panorama", options, 5), options)
+        self.expect_as_undisturbed(self.run_on_hosts(options, 5), options)
 
 
 if __name__ == "__main__":
