@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "lcmtypes/program_version.h"
+#include "lcmtypes/standard_output.h"
 #include "logger/recovered_run.h"
 #include "logger/replay.h"
 #include "logger/unchecked_fields.h"
@@ -65,6 +66,7 @@ int replay_run(const std::string& argument, std::optional<std::int64_t> run,
 }  // namespace
 
 int main(int argc, char** argv) {
+  nextview::answer_for_standard_output();
   CLI::App app{
       "Replays a run from its log alone: folds every range image again and holds against it all\n"
       "that the log says of maps, poses, paths, times and the run's end, bit for bit. Says what "
