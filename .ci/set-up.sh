@@ -67,7 +67,8 @@ when_free() {
     sleep 1
   done
 }
-install_log=$(mktemp)
+install_log=$(mktemp 2> /dev/null) ||
+  fail "No file can be made in ${TMPDIR:-/tmp}: make that folder, or name another in TMPDIR"
 trap 'rm -f "$install_log"' EXIT
 
 # configure [OPTION...]: unless it has been done with these options.

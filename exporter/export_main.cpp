@@ -4,6 +4,7 @@
 
 #include "exporter/export_formats.h"
 #include "lcmtypes/program_version.h"
+#include "lcmtypes/standard_output.h"
 
 namespace {
 
@@ -51,6 +52,7 @@ void export_run(const nextview::ExportOptions& options, const std::vector<std::s
 }  // namespace
 
 int main(int argc, char** argv) {
+  nextview::answer_for_standard_output();
   CLI::App app{
       "Turns a run into files other programs open, from its log alone: the map is built again as\n"
       "./replay does.\n"};

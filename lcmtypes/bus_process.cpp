@@ -9,6 +9,7 @@
 #include "lcmtypes/parameter_bounds.h"
 #include "lcmtypes/program_version.h"
 #include "lcmtypes/serve.h"
+#include "lcmtypes/standard_output.h"
 
 namespace nextview {
 namespace {
@@ -36,6 +37,7 @@ void add_real_time_option(CLI::App& app, double& real_time) {
 
 int run_bus_process(int argc, char** argv, const std::string& role, const std::string& about,
                     const MakeBusProcess& make, const std::function<void(CLI::App&)>& add_options) {
+  answer_for_standard_output();
   CLI::App app{about};
   std::string lcm_url;
   std::int64_t run = 0;

@@ -13,8 +13,9 @@
 #include <thread>
 #include <utility>
 
+#include "lcmtypes/bus_probe.h"
 #include "lcmtypes/channels.h"
-#include "lcmtypes/multicast_probe.h"
+#include "lcmtypes/open_files.h"
 
 namespace nextview {
 namespace {
@@ -90,7 +91,9 @@ struct LcmTransport::Connection {
 
 LcmTransport::LcmTransport(const std::string& lcm_url) {
   const std::string url = resolve_url(lcm_url);
-  probe_multicast(url);
+  // With too few LCM crashes.
+  if (const auto why = too_few_open_files(kOpenFilesOfProcess); !why.empty()) throw BusError(why);
+  probe_bus(url);
   connection_ = std::make_unique<Connection>(url);
   if (!connection_->lcm.good()) throw BusError("LCM cannot be opened with URL '" + url + "'");
 }

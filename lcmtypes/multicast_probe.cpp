@@ -96,7 +96,6 @@ bool comes_back(int fd, const Nonce& nonce) {
 }  // namespace
 
 void probe_multicast(const std::string& lcm_url) {
-  if (!lcm_url.empty() && !lcm_url.starts_with("udpm://")) return;
   const Group group = parse_group(lcm_url);
 
   sockaddr_in destination{};

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "lcmtypes/program_version.h"
+#include "lcmtypes/standard_output.h"
 #include "logger/recovered_run.h"
 #include "logger/replay.h"
 #include "logger/unchecked_fields.h"
@@ -92,6 +93,7 @@ int replay_run(const std::vector<std::string>& arguments, std::optional<std::int
 }  // namespace
 
 int main(int argc, char** argv) {
+  nextview::answer_for_standard_output();
   CLI::App app{
       "Replays a run from its log alone: folds every range image again and holds against it all\n"
       "that the log says of maps, poses, paths, times and the run's end, bit for bit. Says what "

@@ -39,6 +39,11 @@ struct HoleView {
   std::vector<const HoleVoxel*> in_sight;  ///< of all holes, in their order
 };
 
+/// Of the views into all holes so many, those that show most of their own hole for the way there,
+/// are asked what they show of the others. In a large building's first views there are ten times as
+/// many, and to ask them all took seconds.
+constexpr std::size_t kMostHoleViews = 128;
+
 /// Whether nothing but known free space lies between two voxels, on the line of a ray from one to
 /// the other. Both inside the field's window.
 bool is_in_sight(const FreeSpaceField& field, const VoxelIndex& from, const VoxelIndex& to);
@@ -52,7 +57,8 @@ bool is_in_sight(const FreeSpaceField& field, const VoxelIndex& from, const Voxe
 /// @param voxel_m the side of its voxels
 /// @param positions with paths, as ShortestPaths::reached() has them; with the nearest first it
 ///        takes the least time
-/// @return the best first; holes that cannot be looked into from any of the positions are left out
+/// @return the best first, at most kMostHoleViews; holes that cannot be looked into from any of the
+///         positions are left out
 /// @throws std::invalid_argument for parameters that cannot be
 std::vector<HoleView> hole_views(const FreeSpaceField& field, double voxel_m,
                                  std::span<const SurfaceHole> holes, const ShortestPaths& paths,

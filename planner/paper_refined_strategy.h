@@ -11,7 +11,7 @@ namespace nextview {
 /// The paper's method with the refinement of orientations it speaks of (P20): as PaperStrategy, but
 /// among many orientations, of which at each position only those are tried that lie in promising
 /// faces (FaceRefinement). As there, more than 20 are predicted by one panorama; the sensor's own
-/// rays take three to nine times as long (docs/experiments.md).
+/// rays take 4 to 17 times as long (docs/experiments.md).
 class PaperRefinedStrategy : public PaperStrategy {
  public:
   static constexpr StrategyFacts kFacts{.name = "paper_refined",

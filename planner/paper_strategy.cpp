@@ -138,6 +138,7 @@ void PlannerParameters::check() const {
   }
   bounds::kFitnessTolerance.require(fitness_tolerance);
   bounds::kMaxEvaluations.require(max_evaluations);
+  bounds::kDeparture.as("later_departure_m").require(later_departure_m);
   feasibility.check();
 }
 
@@ -228,7 +229,9 @@ NextView PaperStrategy::next_view(const Situation& situation) {
   const VoxelMap& map = situation.space.map();
   follow_map(map);
   if (!situation.refused.empty()) refused_.add(*clear_, way_m_, situation.refused.size());
-  paths_.stand_at(*clear_, map, situation.present.position_m, search_.feasibility.departure_m);
+  const bool first_move = situation.view == 2;
+  paths_.stand_at(*clear_, map, situation.present.position_m,
+                  first_move ? search_.feasibility.departure_m : search_.later_departure_m);
   NextView next = decided(situation);
   if (const Decision* decision = std::get_if<Decision>(&next)) way_m_ = decision->waypoints_m;
   return next;

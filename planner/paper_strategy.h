@@ -25,6 +25,8 @@ struct PlannerParameters {
   double fitness_tolerance = 0.01;  ///< the simplex stops when its fitness range falls below
   int max_evaluations = 70;         ///< or after this many positions
   FeasibilityParameters feasibility;
+  /// In place of feasibility's departure_m at all moves but the first.
+  double later_departure_m = FeasibilityParameters{}.departure_m;
   /// How the orientations are looked through at a position; without it, all the predictor's. The
   /// predictor has its orientations.
   std::optional<FaceRefinement> refinement = {};

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "mapper/mapper_config.h"
+#include "planner/paper_strategy.h"
 #include "planner/strategy_inputs.h"
 #include "sensor/sensor_config.h"
 
@@ -31,6 +32,15 @@ FactorWeights factor_weights_of(const run_config_t& config) {
 
 namespace {
 
+/// The paper's method goes by one departure for all moves (README, the body rule). Among more than
+/// its 20 directions, or after computed views, what is hidden is looked into from ever nearer to
+/// it.
+double later_departure_of_simplex_m(const run_config_t& config) {
+  const bool to_the_letter = config.strategy == PaperStrategy::kFacts.name &&
+                             config.planner.directions == PaperStrategy::kFacts.directions;
+  return to_the_letter ? config.planner.departure_m : config.planner.later_departure_m;
+}
+
 PlannerParameters planner_parameters_of(const run_config_t& config) {
   PlannerParameters parameters;
   parameters.weights = factor_weights_of(config);
@@ -39,6 +49,7 @@ PlannerParameters planner_parameters_of(const run_config_t& config) {
   parameters.fitness_tolerance = config.planner.fitness_tolerance;
   parameters.max_evaluations = config.planner.max_evaluations;
   parameters.feasibility = feasibility_of(config);
+  parameters.later_departure_m = later_departure_of_simplex_m(config);
   return parameters;
 }
 
@@ -92,6 +103,7 @@ TidyUpParameters tidy_up_parameters_of(const run_config_t& config) {
   parameters.view.range_max_m = range_limits_of(config).max_m;
   parameters.view.path_cost_per_m = config.planner.path_cost_per_m;
   parameters.feasibility = feasibility_of(config);
+  parameters.feasibility.departure_m = config.planner.later_departure_m;
   return parameters;
 }
 

@@ -107,6 +107,7 @@ def gnuplot(script, variables, out):
         lines = "".join(f"{name} = {json.dumps(value, ensure_ascii=False)}\n"
                         for name, value in settings.items())
         said = subprocess.run(["gnuplot", "-"], text=True, capture_output=True, check=False,
+                              errors="surrogateescape",  # file names need not be UTF-8
                               input=f"{lines}load {json.dumps(str(ROOT / 'reports' / script))}\n")
         if said.returncode != 0 or not os.path.exists(file) or os.path.getsize(file) == 0:
             raise FigureError(f"gnuplot could not draw {file}: {said.stderr.strip()}")

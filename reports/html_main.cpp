@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "lcmtypes/program_version.h"
+#include "lcmtypes/standard_output.h"
 #include "logger/recovered_run.h"
 #include "reports/html_report.h"
 
@@ -26,6 +27,7 @@ void write_report(const std::vector<std::string>& folders, const std::filesystem
 }  // namespace
 
 int main(int argc, char** argv) {
+  nextview::answer_for_standard_output();
   CLI::App app{
       "Writes a page about a run, or about several beside each other, in one HTML file that asks "
       "for\n"

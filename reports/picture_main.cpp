@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "lcmtypes/program_version.h"
+#include "lcmtypes/standard_output.h"
 #include "logger/recovered_run.h"
 #include "planner/planner_config.h"
 #include "reports/picture_file.h"
@@ -81,6 +82,7 @@ void draw_run(const std::filesystem::path& folder, const std::filesystem::path& 
 }  // namespace
 
 int main(int argc, char** argv) {
+  nextview::answer_for_standard_output();
   CLI::App app{
       "Draws what a run has recovered (paper figure 9): Occupied voxels coloured by height, the\n"
       "sensor's path dashed, its poses with their directions; and what remains unseen, coloured "

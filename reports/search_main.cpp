@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "lcmtypes/program_version.h"
+#include "lcmtypes/standard_output.h"
 #include "logger/run_log.h"
 #include "reports/search_report.h"
 
@@ -14,6 +15,7 @@ constexpr int kEarlyViews = 15;
 }  // namespace
 
 int main(int argc, char** argv) {
+  nextview::answer_for_standard_output();
   CLI::App app{
       "Says as JSON what the search for a view has tried (paper figure 6): positions, the best\n"
       "direction and fitness at each, and the points sensed where it began. From the log alone.\n"};

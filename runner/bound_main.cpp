@@ -6,6 +6,7 @@
 #include <iostream>
 #include <thread>
 
+#include "lcmtypes/standard_output.h"
 #include "runner/run_options.h"
 #include "runner/run_setup.h"
 #include "runner/run_signals.h"
@@ -92,6 +93,7 @@ int bound(const nextview::RunOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  nextview::answer_for_standard_output();
   int exit_status = 0;
   const auto options = nextview::parse_run_options(argc, argv, exit_status, kDescription);
   if (!options) return exit_status;

@@ -8,6 +8,7 @@
 #include <fstream>
 
 #include "lcmtypes/multicast_probe.h"
+#include "lcmtypes/open_files.h"
 #include "lcmtypes/program_version.h"
 #include "lcmtypes/transport.h"
 #include "runner/child_process.h"
@@ -86,14 +87,11 @@ Finding socket_buffers() {
 }
 
 Finding open_files() {
-  constexpr rlim_t kWanted = 64;
+  const std::string too_few = too_few_open_files(kOpenFilesOfRun);
+  if (!too_few.empty()) return {"open files", false, too_few};
   rlimit limit{};
   ::getrlimit(RLIMIT_NOFILE, &limit);
-  const std::string found = std::to_string(limit.rlim_cur);
-  if (limit.rlim_cur >= kWanted) return {"open files", true, found};
-  return {"open files", false,
-          found + " are allowed, a run takes up to " + std::to_string(kWanted) +
-              "; type: ulimit -n 1024"};
+  return {"open files", true, std::to_string(limit.rlim_cur)};
 }
 
 Finding cache(const std::string& given) {

@@ -159,6 +159,13 @@ def is_there(out, name, labels):
     return True
 
 
+def make_folder(out):
+    try:
+        out.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UsageError(f"--out: {out} cannot be made: {error.strerror}: name another folder") from error
+
+
 def check_parallel():
     """moreutils has another program of that name."""
     try:
@@ -245,7 +252,7 @@ def main(arguments):
     missing = 0
     if todo:
         check_parallel()
-        (ROOT / out).mkdir(parents=True, exist_ok=True)
+        make_folder(ROOT / out)
         set_up_hosts(for_parallel)
         missing = carry_out(out, programs, todo, for_parallel)
     print("\n" + write_table(out) + "\n".join(

@@ -10,6 +10,7 @@
 #include <iostream>
 
 #include "lcmtypes/program_version.h"
+#include "lcmtypes/standard_output.h"
 #include "runner/doctor.h"
 
 namespace {
@@ -66,6 +67,7 @@ int doctor(const std::string& cache) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  nextview::answer_for_standard_output();
   if (argc > 1 && argv[1][0] != '-' && !is_known(argv[1])) return refuse(argv[1]);
   CLI::App app{"Lets a robot with a range sensor recover an unknown indoor scene by itself.\n"};
   app.name("nextview");

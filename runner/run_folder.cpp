@@ -2,6 +2,7 @@
 
 #include <fcntl.h>
 #include <fmt/chrono.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <sys/file.h>
 #include <unistd.h>
@@ -22,7 +23,8 @@ std::filesystem::path new_folder(const RunOptions& options, const std::string& s
   const auto stem = std::filesystem::path(options.runs_folder) /
                     (scene_name + "-seed" + std::to_string(options.seed) + "-" + today());
   std::filesystem::path folder = stem;
-  for (int i = 2; std::filesystem::exists(folder); ++i) {
+  std::error_code ignored;  // where one may not look one may not write, either
+  for (int i = 2; std::filesystem::exists(folder, ignored); ++i) {
     folder = stem.string() + "-" + std::to_string(i);
   }
   return folder;
@@ -31,8 +33,9 @@ std::filesystem::path new_folder(const RunOptions& options, const std::string& s
 void require_writable(const char* option, const std::filesystem::path& folder,
                       const std::error_code& error) {
   if (!error && ::access(folder.c_str(), W_OK) == 0) return;
-  throw SetupError(std::string(option) + ": " + folder.string() + " cannot be written to" +
-                   (error ? ": " + error.message() : ""));
+  throw SetupError(fmt::format("{}: {} cannot be written to: {}: name another folder", option,
+                               folder.string(),
+                               error ? error.message() : std::generic_category().message(errno)));
 }
 
 }  // namespace
@@ -50,7 +53,7 @@ RunFolder RunFolder::make(const RunOptions& options, const std::string& scene_na
   require_empty();
   std::filesystem::create_directories(folder, error);
   require_writable("--out", folder, error);
-  RunFolder kept(folder, 0.0);
+  RunFolder kept("--out", folder, 0.0);
   require_empty();  // nor has another run, started at the same time, begun and ended meanwhile
   return kept;
 }
@@ -66,14 +69,19 @@ RunFolder RunFolder::of_earlier_run(const std::filesystem::path& folder) {
   }
   require_writable("--resume", folder, {});
   constexpr double kPatience_s = 5.0;
-  return {folder, kPatience_s};
+  return {"--resume", folder, kPatience_s};
 }
 
-RunFolder::RunFolder(std::filesystem::path path, double patience_s)
+RunFolder::RunFolder(const char* option, std::filesystem::path path, double patience_s)
     : path_(std::move(path)), lock_(::open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   for (double waited_s = 0.0; ::flock(lock_.get(), LOCK_EX | LOCK_NB) != 0; waited_s += 0.01) {
     if (errno != EWOULDBLOCK) return;  // a file system without locks
-    if (waited_s >= patience_s) throw SetupError(path_.string() + ": another run goes on in it");
+    if (waited_s >= patience_s) {
+      throw SetupError(
+          fmt::format("{}: {}: another run goes on in it: wait for it, or name another "
+                      "folder",
+                      option, path_.string()));
+    }
     ::poll(nullptr, 0, 10);
   }
 }

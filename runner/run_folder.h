@@ -26,7 +26,7 @@ class RunFolder {
   int lock() const { return lock_.get(); }
 
  private:
-  RunFolder(std::filesystem::path path, double patience_s);
+  RunFolder(const char* option, std::filesystem::path path, double patience_s);
 
   std::filesystem::path path_;
   FileDescriptor lock_;

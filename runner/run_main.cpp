@@ -10,6 +10,8 @@
 #include <system_error>
 #include <utility>
 
+#include "lcmtypes/open_files.h"
+#include "lcmtypes/standard_output.h"
 #include "runner/exit_status.h"
 #include "runner/run_signals.h"
 #include "runner/run_supervisor.h"
@@ -90,6 +92,8 @@ int carry_out(const nextview::RunOptions& options, nextview::RunSetup setup,
 }
 
 int run(const nextview::RunOptions& options, nextview::RunSupervisor::Clock::time_point start) {
+  const std::string too_few = nextview::too_few_open_files(nextview::kOpenFilesOfRun);
+  if (!too_few.empty()) throw nextview::SetupError(too_few);
   if (!options.resume.empty()) {
     auto folder = nextview::RunFolder::of_earlier_run(options.resume);
     const ArtefactFiles files(folder.path());
@@ -109,6 +113,7 @@ int run(const nextview::RunOptions& options, nextview::RunSupervisor::Clock::tim
 }  // namespace
 
 int main(int argc, char** argv) {
+  nextview::answer_for_standard_output();
   const auto start = nextview::RunSupervisor::Clock::now();
   int exit_status = 0;
   const auto options =

@@ -328,8 +328,9 @@ void add_planner_options(CLI::App& app, RunOptions& options) {
       ->check(number_within(bounds::kDeparture))
       ->capture_default_str()
       ->group(group);
-  app.add_option("--later-departure", options.later_departure_m,
-                 "surface: likewise after the first move, m")
+  app.add_option(
+         "--later-departure", options.later_departure_m,
+         "Likewise after the first move, m: surface, tidying up, and more directions than 20")
       ->check(number_within(bounds::kDeparture))
       ->capture_default_str()
       ->group(group);

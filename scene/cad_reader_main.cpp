@@ -13,6 +13,7 @@
 #include <string_view>
 
 #include "lcmtypes/program_version.h"
+#include "lcmtypes/standard_output.h"
 #include "scene/cad_answer.h"
 #include "scene/cad_file.h"
 
@@ -64,6 +65,7 @@ int explain(std::string_view asked) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  nextview::answer_for_standard_output();
   if (argc != 5) return explain(argc == 2 ? argv[1] : "");
   be_expendable(std::atoi(argv[1]));
   std::FILE* answer = take_stdout();

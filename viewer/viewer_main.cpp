@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "lcmtypes/program_version.h"
+#include "lcmtypes/standard_output.h"
 #include "logger/recovered_run.h"
 #include "viewer/run_source.h"
 #include "viewer/view_server.h"
@@ -78,7 +79,8 @@ void show(const Options& options) {
   // A run must not be slowed by who looks on.
   setpriority(PRIO_PROCESS, 0, 15);
   for (const std::string& log : options.logs) {
-    if (!std::filesystem::is_regular_file(nextview::log_file_of(log))) {
+    std::error_code ignored;
+    if (!std::filesystem::is_regular_file(nextview::log_file_of(log), ignored)) {
       throw std::runtime_error(log + ": holds no run.lcmlog; name the folder of a run, or a log");
     }
   }
@@ -109,6 +111,7 @@ void show(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  nextview::answer_for_standard_output();
   CLI::App app{
       "Shows runs in a browser: the room as it is being recovered, view by view. Serves a page on\n"
       "this machine, 127.0.0.1, only, until Ctrl-C.\n"};

@@ -90,6 +90,18 @@ TEST(LcmTransport, SaysWhatIsWrongWithAUrl) {
   EXPECT_NE(error_of("udpm://239.255.76.67:70000").find("not a port"), std::string::npos);
   EXPECT_NE(error_of("udpm://127.0.0.1:7667").find("not a multicast group"), std::string::npos);
   EXPECT_NE(error_of("pigeon://here").find("pigeon://here"), std::string::npos);
+  EXPECT_NE(error_of("memq://").find("leads to no other process"), std::string::npos);
+}
+
+// LCM itself tries without an end, with three lines each time.
+TEST(LcmTransport, SaysThatNoServerAnswers) {
+  testing::internal::CaptureStderr();
+  const std::string error = error_of("tcpq://127.0.0.1:1");
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_NE(error.find("no LCM server answers at 127.0.0.1:1: Connection refused"),
+            std::string::npos)
+      << error;
+  EXPECT_NE(error_of("tcpq://127.0.0.1:many").find("no LCM server answers"), std::string::npos);
 }
 
 // In a network of its own, whose loopback is down: no multicast route, as on a fresh container.

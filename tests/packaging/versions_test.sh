@@ -30,6 +30,8 @@ for program in "$build"/bin/*; do
   ! is_of_tests "$name" || continue
   said=$("$program" --version 2>&1) || fail "$name --version: status $?: $said"
   [ "$said" = "$name $version" ] || fail "$name --version: $said, where nextview says $version"
+  ! "$program" --version > /dev/full 2> "$folder/said" || fail "$name says that all is well to a full disk"
+  grep -q "^$name: .*standard output" "$folder/said" || fail "$name: a full disk: $(cat "$folder/said")"
   built=$((built + 1))
 done
 [ "$built" -ge 14 ] || fail "only $built programs in $build/bin"

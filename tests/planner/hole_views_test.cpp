@@ -167,6 +167,47 @@ TEST_F(RoomWithHoles, SparseRaysAndDistrustCountLess) {
       0.25 / 1.96, 1e-12);
 }
 
+// Every voxel of every hole, one after the other.
+TEST_F(RoomWithHoles, AViewShowsOfAllHolesWhatAskingForEveryVoxelSays) {
+  std::mt19937 random(7);
+  int shown = 0;
+  int not_shown = 0;
+  parameters.range_max_m = 1.6;
+  for (int world = 0; world < 40; ++world) {
+    for_each_voxel(map.window(), [&](const VoxelIndex& v) {
+      const bool wall = (v.array() == 0).any() || v[0] == 20 || v[1] == 19 || v[2] == 11;
+      const bool is_hole = random() % (wall ? 4 : 400) == 0;
+      map.set_label(v, is_hole ? Label::Unmarked : wall ? Label::Occupied : Label::Empty);
+    });
+    const FreeSpaceField field(map);
+    for (const HoleView& view : views_from({{10, 4, 6}, {10, 3, 6}, {8, 3, 5}, {10, 5, 7}})) {
+      const Eigen::Matrix3d sensor_from_world =
+          world_from_sensor_rotation(view.pan_rad, view.tilt_rad).transpose();
+      std::vector<VoxelIndex> expected;
+      for (const SurfaceHole& hole : holes) {
+        for (const HoleVoxel& voxel : hole.voxels) {
+          const Eigen::Vector3d out = 0.1 * (view.voxel - voxel.voxel).cast<double>();
+          const bool in_range = out.norm() <= parameters.range_max_m;
+          const bool flat = !voxel.outward.isZero() &&
+                            out.dot(voxel.outward) < parameters.min_cosine * out.norm();
+          const bool in_field = parameters.field.contains(sensor_from_world * -out.normalized());
+          if (in_range && !flat && in_field && is_in_sight(field, view.voxel, voxel.voxel)) {
+            expected.push_back(voxel.voxel);
+          } else {
+            ++not_shown;
+          }
+        }
+      }
+      std::vector<VoxelIndex> in_sight;
+      for (const HoleVoxel* voxel : view.in_sight) in_sight.push_back(voxel->voxel);
+      ASSERT_EQ(in_sight, expected);
+      shown += static_cast<int>(expected.size());
+    }
+  }
+  EXPECT_GT(shown, 1000);
+  EXPECT_GT(not_shown, 1000);
+}
+
 TEST_F(RoomWithHoles, ParametersThatCannotBeAreNamed) {
   const auto refused = [&](auto change) {
     HoleViewParameters changed = parameters;

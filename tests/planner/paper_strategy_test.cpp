@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <memory>
 #include <stdexcept>
 
 #include "planner/prediction/selective_view_predictor.h"
@@ -218,6 +219,35 @@ TEST_F(Hall, RefusedGoalsAreAvoided) {
     ++compared;
   }
   EXPECT_GT(compared, 3);
+}
+
+// Within the departure the body may stand in what nobody has seen, as it must at the first move;
+// afterwards only as near as the later departure says, or what hides there is run into.
+TEST_F(Hall, AfterTheFirstMoveTheBodyStaysInTheKnown) {
+  present.position_m = {2.0, 3.2, 0.9};
+  parameters.later_departure_m = 0.3;
+  const auto new_predictor = [] {
+    return std::make_unique<PlainViewPredictor>(
+        prediction_raster(TiltedLineScan::with_aperture(8, 4, 1.0), {}), 0.1,
+        icosahedron_orientations(), false);
+  };
+  const KnownSpace space(map);
+  // How near to the unseen wall, whose boxes begin at 3.85 m, positions were tried.
+  const auto nearest_m = [&](int view) {
+    double nearest_m = 10.0;
+    for (int seed = 1; seed <= 20; ++seed) {
+      PaperStrategy strategy(parameters, {}, 0.1, new_predictor(), new_predictor());
+      const NextView next = strategy.next_view({space, present, seed, view, 1, {}});
+      for (const TriedPosition& tried : std::get<Decision>(next).tried) {
+        if (tried.fitness < 0.0) continue;  // infeasible
+        const double center_m = map.grid().center_m(map.grid().voxel_of(tried.position_m)).y();
+        nearest_m = std::min(nearest_m, 3.85 - center_m);
+      }
+    }
+    return nearest_m;
+  };
+  EXPECT_LT(nearest_m(2), parameters.feasibility.body_radius_m);
+  EXPECT_GE(nearest_m(3), parameters.feasibility.body_radius_m - 1e-9);
 }
 
 // Boxed in, the robot can only turn, and the direction it has just looked in is not taken again

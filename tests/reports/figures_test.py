@@ -1,7 +1,9 @@
 """What the figures are drawn from: curves over seeds, the edges of a room, which runs belong together."""
 
 import json
+import os
 import pathlib
+import shutil
 import sys
 import tempfile
 import unittest
@@ -64,6 +66,15 @@ class Runs(unittest.TestCase):
         self.assertEqual(figures.read_run(named, self.path, None)[1:3], ("other", "mine"))
         wide = self.run_folder("c", {"scene": "other", "strategy": "mine", "sensor": "wide"})
         self.assertEqual(figures.read_run(wide, self.path, None)[1:3], ("other", "mine-wide"))
+
+    @unittest.skipUnless(shutil.which("gnuplot"), "gnuplot is not installed")
+    def test_may_lie_in_folders_whose_names_are_no_utf_8(self):
+        folder = self.path / os.fsdecode(b"o\xff")
+        folder.mkdir()
+        script = self.path / "script.gp"
+        script.write_text("eval(terminal_options)\nset output out\nplot x\n", encoding="utf-8")
+        figures.gnuplot(script, {"size": (200, 100)}, folder / "figure")
+        self.assertEqual(sorted(os.listdir(folder)), ["figure.png", "figure.svg"])
 
     def test_what_a_program_complains_of_is_passed_on(self):
         self.program.write_text("#!/bin/sh\necho 'x/run.lcmlog: no search' >&2\nexit 1\n", encoding="utf-8")

@@ -49,6 +49,19 @@ TEST_F(FolderOfARun, IsNotMadeOfOneThatHoldsARun) {
   EXPECT_NE(why_not_made().find("--resume"), std::string::npos) << why_not_made();
 }
 
+TEST_F(FolderOfARun, ThatCannotBeMadeIsNamed) {
+  const std::string too_long(300, 'x');
+  for (const std::string& folder : {std::string("/proc/nextview"), too_long, too_long + "/run"}) {
+    options_.out = folder;
+    EXPECT_TRUE(why_not_made().starts_with("--out: " + folder + " cannot be written to: "))
+        << why_not_made();
+    options_.out.clear();
+    options_.runs_folder = folder;
+    EXPECT_TRUE(why_not_made().starts_with("--out: " + folder)) << why_not_made();
+    EXPECT_NE(why_not_made().find("name another folder"), std::string::npos) << why_not_made();
+  }
+}
+
 TEST_F(FolderOfARun, IsTakenUpAgainWithItsLogOnly) {
   const auto why = [this] { return why_not([this] { RunFolder::of_earlier_run(base_ / "run"); }); };
   EXPECT_NE(why().find("no such folder"), std::string::npos) << why();

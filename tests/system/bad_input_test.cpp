@@ -134,8 +134,8 @@ TEST(BadOption, LcmUrlIsNamed) {
   const TemporaryFolder folder;
   const Outcome outcome = run_views(folder / "run", 2, {"--lcm-url", "nonsense"});
   EXPECT_EQ(outcome.status, 1);
-  EXPECT_NE(outcome.output.find("LCM cannot be opened with URL 'nonsense'"), std::string::npos)
-      << outcome.output;
+  EXPECT_NE(outcome.output.find("LCM URL 'nonsense'"), std::string::npos) << outcome.output;
+  EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1) << outcome.output;
 }
 
 TEST(BadOption, OutThatHoldsARunIsLeftAlone) {
@@ -146,6 +146,50 @@ TEST(BadOption, OutThatHoldsARunIsLeftAlone) {
   EXPECT_EQ(outcome.status, 1);
   EXPECT_NE(outcome.output.find("--out"), std::string::npos) << outcome.output;
   EXPECT_EQ(std::filesystem::last_write_time(folder / "run" / "run.lcmlog"), before);
+}
+
+/// What a program says and does that is started by a line of the shell, "$@" its arguments.
+Outcome run_by_shell(const std::string& line, const std::vector<std::string>& arguments) {
+  std::vector<std::string> all = {"/usr/bin/env", "bash", "-c", line, "bash"};
+  all.insert(all.end(), arguments.begin(), arguments.end());
+  return run_program(all);
+}
+
+TEST(BadMachine, TooFewOpenFilesAreNamed) {
+  const TemporaryFolder folder;
+  const std::vector<std::string> run = run_arguments(folder / "run", 1);
+  for (const std::vector<std::string>& arguments :
+       {run, std::vector<std::string>{program_path("nextview_mapper"), "--run", "1"}}) {
+    for (const char* limit : {"8", "16"}) {
+      const Outcome outcome =
+          run_by_shell(std::string("ulimit -n ") + limit + "; exec \"$@\"", arguments);
+      EXPECT_EQ(outcome.status, 1) << outcome.output;
+      EXPECT_NE(outcome.output.find("type, in a new shell or as root: ulimit -n 1024\n"),
+                std::string::npos)
+          << outcome.output;
+      EXPECT_EQ(std::count(outcome.output.begin(), outcome.output.end(), '\n'), 1)
+          << outcome.output;
+    }
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "run"));
+  // Where the system allows more, that is taken.
+  const Outcome allowed = run_by_shell("ulimit -S -n 16; exec \"$@\"", run);
+  EXPECT_EQ(allowed.status, 0) << allowed.output;
+}
+
+TEST(BadMachine, AFullOutputIsNoSuccess) {
+  const TemporaryFolder folder;
+  const std::string into_full = "exec \"$@\" > /dev/full";
+  const Outcome run = run_by_shell(into_full, run_arguments(folder / "run", 1));
+  EXPECT_EQ(run.status, 1) << run.output;
+  EXPECT_NE(run.output.find("could not be written to standard output"), std::string::npos);
+  EXPECT_TRUE(std::filesystem::exists(folder / "run" / "summary.json"));
+  const std::vector<std::string> replay = {program_path("nextview_replay"),
+                                           (folder / "run").string()};
+  EXPECT_EQ(run_by_shell(into_full, replay).status, 1);
+  // Whoever has read enough may go.
+  const Outcome gone = run_by_shell("set -o pipefail; \"$@\" | true", replay);
+  EXPECT_EQ(gone.output, "");
 }
 
 TEST(Help, IsPrinted) {

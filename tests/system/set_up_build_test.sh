@@ -45,4 +45,7 @@ grep -q '^Building nextview in' "$folder/said" || fail "not said that it builds"
 
 if builds broken; then fail "a build that fails did not"; fi
 grep -q 'no such header' "$folder/said" && grep -q 'The build failed' "$folder/said" || fail "not said why"
+TMPDIR=$folder/nowhere builds programs && fail "nothing can be written, and it went on"
+[ "$(cat "$folder/said")" = "No file can be made in $folder/nowhere: make that folder, or name another in TMPDIR" ] ||
+  fail "not said what is wrong with TMPDIR"
 echo "silent when there is nothing to do"
