@@ -5,6 +5,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -14,6 +15,9 @@
 
 #include "lcmtypes/channels.h"
 #include "lcmtypes/decode.h"
+#include "lcmtypes/drop_lines.h"
+#include "lcmtypes/early_messages.h"
+#include "lcmtypes/heard_messages.h"
 #include "lcmtypes/rejected_message.h"
 #include "lcmtypes/transport.h"
 
@@ -24,7 +28,7 @@ struct BusCounters {
   std::int64_t delivered = 0;  ///< to handlers; requests and status messages not counted
   std::int64_t foreign = 0;    ///< messages of other runs, ignored
   std::int64_t repeated = 0;   ///< messages seen before, ignored
-  std::int64_t refused = 0;    ///< messages that cannot be right
+  std::int64_t refused = 0;    ///< messages that cannot be right, and datagrams that are none
   std::int64_t lost = 0;       ///< messages sent again because somebody asked
 };
 
@@ -34,6 +38,10 @@ struct BusCounters {
 /// again, the same bytes, to whoever requests it, until the publisher forgets it. Receivers see
 /// each key once. Whoever waits requests again on a timer of its own; nothing else keeps a run
 /// whole on a bus that may lose.
+///
+/// Anybody may publish. Under a key that has been taken, or that this process has published itself,
+/// another message is refused; so is what a handler rejects. What is refused is counted, and said
+/// in a line as long as there are few (DropLines).
 class Bus {
  public:
   /// Joins a run over LCM.
@@ -79,10 +87,10 @@ class Bus {
   template <class Message>
   void on(std::function<void(const Message&)> handler) {
     take_channel(Channel<Message>::name);
-    transport_->subscribe(Channel<Message>::name, [this, handler = std::move(handler)](
-                                                      std::span<const std::uint8_t> bytes) {
-      deliver<Message>(bytes, handler);
-    });
+    receive(Channel<Message>::name,
+            [this, handler = std::move(handler)](std::span<const std::uint8_t> bytes) {
+              deliver<Message>(bytes, handler);
+            });
   }
 
   /// Asks whoever published it for a message of a view.
@@ -99,8 +107,10 @@ class Bus {
 
   /// Waits for one message and handles it.
   /// @return false when none came within the timeout, or a signal interrupted the wait
-  /// @throws what a handler throws, RejectedMessage apart; BusError when the bus has broken down
-  bool handle(std::chrono::milliseconds timeout) { return transport_->handle(timeout); }
+  /// @throws what a handler throws, RejectedMessage, TooEarly and NotNow apart; BusError when the
+  /// bus
+  ///         has broken down
+  bool handle(std::chrono::milliseconds timeout);
 
  private:
   template <class Message>
@@ -110,7 +120,15 @@ class Bus {
                      const std::string& reason, std::vector<std::uint8_t> bytes);
   void request_channel(std::string_view channel, int view, int attempt);
   void answer(const request_t& request);
-  void drop(std::string_view channel, std::string_view reason);
+  void drop(std::string_view channel, std::string_view reason, std::int64_t count = 1);
+  void receive(std::string_view channel, Transport::Receiver receiver);
+  /// Whether a message is new; else it has been counted as repeated, or refused.
+  bool is_new(std::string_view channel, const MessageKey& key, std::span<const std::uint8_t> bytes);
+  void taken(std::string_view channel, const MessageKey& key, std::span<const std::uint8_t> bytes);
+  void keep_early(std::string_view channel, std::span<const std::uint8_t> bytes,
+                  const TooEarly& early);
+  void judge_again();
+  void drop_stale();
   void take_channel(std::string_view channel);
   void note_foreign(std::string_view channel, std::int64_t run);
 
@@ -120,8 +138,15 @@ class Bus {
   BusCounters counters_;
   std::function<void(const request_t&)> missing_;
   std::map<std::string, std::map<MessageKey, std::vector<std::uint8_t>>, std::less<>> published_;
-  std::map<std::string, std::set<MessageKey>, std::less<>> seen_;
+  HeardMessages heard_;
   std::set<std::string, std::less<>> handled_;  // channels
+  std::map<std::string, Transport::Receiver, std::less<>> receivers_;
+  EarlyMessages early_;
+  bool judging_again_ = false;
+  bool more_to_judge_ = false;
+  std::optional<EarlyMessages::Clock::time_point> early_since_;  // of the one judged again
+  std::pair<MessageKey, EarlyMessages::Clock::time_point> asked_early_;
+  DropLines drop_lines_;
 };
 
 template <class Message>
@@ -135,17 +160,17 @@ void Bus::deliver(std::span<const std::uint8_t> bytes,
     return;
   }
   const MessageKey key = key_of(*decoded.message);
-  if (Channel<Message>::answered && !seen_[std::string(channel)].insert(key).second) {
-    ++counters_.repeated;
-    return;
-  }
+  if (Channel<Message>::answered && !is_new(channel, key, bytes)) return;
   try {
     handler(*decoded.message);
-    if (Channel<Message>::answered) ++counters_.delivered;
+  } catch (const TooEarly& early) {
+    return keep_early(channel, bytes, early);
+  } catch (const NotNow&) {
+    return;
   } catch (const RejectedMessage& rejected) {
-    seen_[std::string(channel)].erase(key);  // the right one may still come
-    drop(channel, rejected.what());
+    return drop(channel, rejected.what());  // the right one may still come
   }
+  if (Channel<Message>::answered) taken(channel, key, bytes);
 }
 
 }  // namespace nextview

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "tests/lcmtypes/examples.h"
 #include "tests/lcmtypes/lossy_network.h"
 
@@ -221,6 +223,109 @@ TEST_F(BusPair, RefusesToPublishWhatItWouldNotAccept) {
   other.pan_rad = 1.0;
   EXPECT_THROW(planner_.publish(other), std::logic_error);
   EXPECT_EQ(on_channel("NEXTVIEW_GOAL").size(), 1U);
+}
+
+TEST_F(BusPair, RefusesAnotherMessageUnderAKeyThatWasTaken) {
+  std::vector<double> pans;
+  mapper_.on<goal_t>([&](const goal_t& goal) { pans.push_back(goal.pan_rad); });
+  goal_t goal = example<goal_t>();
+  planner_.publish(goal);
+  settle();
+  goal_t forged = goal;
+  forged.run = 7;
+  forged.pan_rad = 1.25;
+  testing::internal::CaptureStderr();
+  network_.connect()->publish("NEXTVIEW_GOAL", encode(forged));
+  planner_.publish(goal);
+  settle();
+  const std::string lines = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(
+      lines,
+      "mapper: dropped a message on NEXTVIEW_GOAL: view 2, attempt 1, part 0 differs from the "
+      "one that was taken before\n");
+  EXPECT_EQ(pans, std::vector<double>{goal.pan_rad});
+  EXPECT_EQ(mapper_.counters().refused, 1);
+  EXPECT_EQ(mapper_.counters().repeated, 1) << "the true one again";
+}
+
+TEST_F(BusPair, RefusesWhatSomebodyElseSaysUnderAKeyOfItsOwn) {
+  int received = 0;
+  planner_.on<goal_t>([&](const goal_t&) { ++received; });
+  planner_.publish(example<goal_t>());
+  goal_t forged = example<goal_t>();
+  forged.run = 7;
+  forged.pan_rad = 1.25;
+  testing::internal::CaptureStderr();
+  network_.connect()->publish("NEXTVIEW_GOAL", encode(forged));
+  settle();
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("differs from the one published here"),
+            std::string::npos);
+  EXPECT_EQ(received, 1);
+  EXPECT_EQ(planner_.counters().refused, 1);
+}
+
+/// Takes an arrival only after its goal.
+class Expectant {
+ public:
+  explicit Expectant(Bus& bus) {
+    bus.on<goal_t>([this](const goal_t& goal) { goals_.insert(key_of(goal)); });
+    bus.on<arrival_t>([this](const arrival_t& arrival) {
+      if (!goals_.contains(key_of(arrival))) {
+        throw TooEarly("no goal asked for it", Channel<goal_t>::name, arrival.view, 0);
+      }
+      if (arrival.path_length_m > 1000.0) throw RejectedMessage("too long a way");
+      arrived_.push_back(arrival.path_length_m);
+    });
+  }
+  const std::vector<double>& arrived() const { return arrived_; }
+
+ private:
+  std::set<MessageKey> goals_;
+  std::vector<double> arrived_;
+};
+
+TEST_F(BusPair, KeepsWhatComesTooEarlyAsksForWhatLedToItAndThenJudgesAll) {
+  const Expectant expectant(mapper_);
+  goal_t goal = example<goal_t>();
+  arrival_t arrival = example<arrival_t>();
+  arrival.run = 7;
+  arrival.view = goal.view;
+  arrival.attempt = goal.attempt;
+  const auto stranger = network_.connect();
+  arrival.path_length_m = 2000.0;
+  stranger->publish("NEXTVIEW_ARRIVAL", encode(arrival));  // forged, and first
+  arrival.path_length_m = 3.0;
+  stranger->publish("NEXTVIEW_ARRIVAL", encode(arrival));
+  arrival.path_length_m = 4.0;
+  stranger->publish("NEXTVIEW_ARRIVAL", encode(arrival));
+  settle();
+  EXPECT_TRUE(expectant.arrived().empty());
+  EXPECT_EQ(mapper_.counters().refused, 0);
+  EXPECT_EQ(on_channel("NEXTVIEW_REQUEST").size(), 1U) << "for the goal, once";
+  testing::internal::CaptureStderr();
+  planner_.publish(goal);
+  settle();
+  const std::string lines = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(expectant.arrived(), std::vector<double>{3.0});
+  EXPECT_EQ(mapper_.counters().refused, 2) << lines;
+  EXPECT_NE(lines.find("too long a way"), std::string::npos) << lines;
+  EXPECT_NE(lines.find("differs from the one that was taken before"), std::string::npos) << lines;
+}
+
+TEST_F(BusPair, KeepsNoMoreOfWhatComesTooEarlyThanItHasRoomFor) {
+  const Expectant expectant(mapper_);
+  arrival_t arrival = example<arrival_t>();
+  arrival.run = 7;
+  const auto stranger = network_.connect();
+  testing::internal::CaptureStderr();
+  constexpr int kMore = 100;
+  for (std::size_t i = 0; i < EarlyMessages::kMost + kMore; ++i) {
+    arrival.path_length_m = static_cast<double>(i);
+    stranger->publish("NEXTVIEW_ARRIVAL", encode(arrival));
+  }
+  settle();
+  testing::internal::GetCapturedStderr();
+  EXPECT_EQ(mapper_.counters().refused, kMore);
 }
 
 class LossyBusPair : public BusPair {

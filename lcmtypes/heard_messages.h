@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include "lcmtypes/channels.h"
+
+namespace nextview {
+
+/// The messages that have been taken, by channel and key: of each only a hash of its bytes.
+class HeardMessages {
+ public:
+  enum class Verdict { New, Repeated, Different };
+
+  /// What a message is, given the one that was taken under its key.
+  Verdict judge(std::string_view channel, const MessageKey& key,
+                std::span<const std::uint8_t> bytes) const;
+  void take(std::string_view channel, const MessageKey& key, std::span<const std::uint8_t> bytes);
+
+ private:
+  using Hash = std::pair<std::uint64_t, std::uint64_t>;
+  static Hash hash_of(std::span<const std::uint8_t> bytes);
+
+  std::map<std::string, std::map<MessageKey, Hash>, std::less<>> by_channel_;
+};
+
+}  // namespace nextview
