@@ -1,5 +1,6 @@
 #include "base_sim/base_sim_process.h"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -83,6 +84,8 @@ void BaseSimProcess::move_to(const goal_t& goal) {
   if (real_time_.is_over()) publish_moved();
   next_ = motion.arrived ? MessageKey{.view = goal.view + 1, .attempt = 1}
                          : MessageKey{.view = goal.view, .attempt = goal.attempt + 1};
+  if (!motion.arrived && asked_for_view_ == goal.view) asked_for_view_ = 0;  // that was the answer
+  bus_.ignore_before<goal_t>(next_.view);
 }
 
 void BaseSimProcess::publish_moved() {
@@ -97,8 +100,8 @@ std::chrono::milliseconds BaseSimProcess::longest_wait() const {
 
 void BaseSimProcess::ask_again() {
   goals_.erase(goals_.begin(), goals_.lower_bound(next_));  // of attempts that are over
-  // Nobody has gone on to a later goal: there is none to ask for.
-  if (goals_.empty() && !behind()) return;
+  // Nobody has gone on to a later goal, or waits for what comes of it: there is none to ask for.
+  if (!waits()) return;
   bus_.request<goal_t>(next_.view, next_.attempt);
   asked_for_ = next_;
 }
@@ -106,6 +109,7 @@ void BaseSimProcess::ask_again() {
 void BaseSimProcess::on_missing(const request_t& request) {
   const bool on_the_way = moved_ && moved_->first.view == request.view;
   if (request.wanted_channel == Channel<arrival_t>::name && !on_the_way) {
+    asked_for_view_ = std::max(asked_for_view_, request.view);
     bus_.request<goal_t>(request.view, request.attempt);
   }
 }

@@ -30,6 +30,9 @@ class BaseSimProcess : public BusProcess {
   std::chrono::milliseconds longest_wait() const override;
   /// Asks for the next goal, when later ones have come, or must have before it was started.
   void ask_again() override;
+  bool waits() const override {
+    return !goals_.empty() || behind() || asked_for_view_ >= next_.view;
+  }
   bool behind() const override { return next_.view <= reached(); }
   void on_missing(const request_t& request) override;
 
@@ -43,6 +46,7 @@ class BaseSimProcess : public BusProcess {
   std::map<MessageKey, goal_t> goals_;  ///< still to be carried out
   MessageKey next_{.view = 1, .attempt = 1};
   MessageKey asked_for_;
+  int asked_for_view_ = 0;  ///< the latest view whose arrival somebody waits for
   RealTime real_time_;
   std::optional<std::pair<arrival_t, timing_t>> moved_;  ///< not said yet: the motion is under way
 };

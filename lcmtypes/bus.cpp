@@ -2,12 +2,22 @@
 
 #include <algorithm>
 #include <iostream>
+#include <limits>
 #include <stdexcept>
 
 #include "lcmtypes/lcm_transport.h"
 
 namespace nextview {
 namespace {
+
+/// Ranges of a request for parts, so that it travels in one packet.
+constexpr std::size_t kRangesPerRequest = 128;
+/// So often parts are asked for before all of the message is.
+constexpr int kPartsAskedInVain = 8;
+/// So many messages asked for are remembered to tell how long answers take.
+constexpr std::size_t kAskedRemembered = 256;
+/// Of a message in many parts, which take a while to send: by whoever got none of them.
+constexpr std::chrono::milliseconds kWholeOnceWithin{50};
 
 std::string describe(const MessageKey& key) {
   std::string text;
@@ -27,6 +37,11 @@ Bus::Bus(std::unique_ptr<Transport> transport, std::int64_t run, std::string rol
       role_(std::move(role)),
       drop_lines_(role_, std::cerr) {
   on<request_t>([this](const request_t& request) { answer(request); });
+  on<parts_request_t>([this](const parts_request_t& request) { answer_parts(request); });
+  on<recorded_t>([this](const recorded_t& recorded) {
+    recorded_views_ = std::max(recorded_views_, recorded.recorded_views);
+    forget_settled();
+  });
 }
 
 void Bus::on_missing(std::function<void(const request_t&)> handler) {
@@ -44,14 +59,18 @@ void Bus::publish_bytes(std::string_view channel, const MessageKey& key, bool re
                            name + ", more than a message may have");
   }
   std::span<const std::uint8_t> to_send = bytes;
-  if (remember) {
+  latest_published_ = std::max(latest_published_, remember ? key.view : 0);
+  if (remember && (key.view == 0 || key.view > settled_views())) {
     // Takes the bytes only when the key is new.
-    const auto [kept, is_new] = published_[name].try_emplace(key, std::move(bytes));
-    if (!is_new && kept->second != bytes) {
+    const auto [kept, is_new] = published_[name].try_emplace(key);
+    if (is_new) {
+      kept->second.bytes = std::move(bytes);
+    } else if (kept->second.bytes != bytes) {
       throw std::logic_error(role_ + " would publish view " + std::to_string(key.view) +
                              " twice, differently, on " + name);
     }
-    to_send = kept->second;
+    kept->second.sent = Clock::now();
+    to_send = kept->second.bytes;
   }
   transport_->publish(channel, to_send);
 }
@@ -59,7 +78,7 @@ void Bus::publish_bytes(std::string_view channel, const MessageKey& key, bool re
 std::size_t Bus::remembered_bytes() const {
   std::size_t bytes = 0;
   for (const auto& [channel, messages] : published_) {
-    for (const auto& [key, message] : messages) bytes += message.size();
+    for (const auto& [key, message] : messages) bytes += message.bytes.size();
   }
   return bytes;
 }
@@ -84,7 +103,52 @@ void Bus::request_channel(std::string_view channel, int view, int attempt) {
   request.attempt = attempt;
   request.wanted_channel = std::string(channel);
   request.asker = role_;
+  note_asked(channel, view, attempt);
   publish(request);
+}
+
+void Bus::request_parts_of(std::string_view channel, int view, int attempt,
+                           std::span<const PartRange> parts) {
+  parts_request_t request{};
+  request.view = view;
+  request.attempt = attempt;
+  for (const PartRange& range : parts.first(std::min(parts.size(), kRangesPerRequest))) {
+    request.first_wanted_part.push_back(range.first);
+    request.last_wanted_part.push_back(range.last);
+  }
+  request.ranges = static_cast<std::int32_t>(request.first_wanted_part.size());
+  request.wanted_channel = std::string(channel);
+  request.asker = role_;
+  if (note_asked(channel, view, attempt) % kPartsAskedInVain == 0) {
+    return request_channel(channel, view, attempt);
+  }
+  publish(request);
+}
+
+int Bus::note_asked(std::string_view channel, int view, int attempt) {
+  // Of what nobody has, nothing ever comes.
+  if (asked_.size() >= kAskedRemembered) asked_.clear();
+  Asked& asked = asked_[{std::string(channel), {view, attempt, 0}}];
+  if (asked.times++ == 0) asked.first = Clock::now();
+  return asked.times;
+}
+
+void Bus::note_come(std::string_view channel, const MessageKey& key) {
+  if (asked_.empty()) return;
+  for (const int attempt : {key.attempt, 0}) {
+    const auto asked = asked_.find({std::string(channel), {key.view, attempt, 0}});
+    if (asked == asked_.end()) continue;
+    if (asked->second.times == 1) response_time_.took(Clock::now() - asked->second.first);
+    asked_.erase(asked);
+  }
+}
+
+void Bus::send_again(std::string_view channel, Published& message, Clock::time_point now,
+                     std::chrono::milliseconds once_within) {
+  if (now - message.sent < once_within) return;
+  ++counters_.lost;
+  message.sent = Clock::now();
+  transport_->publish(channel, message.bytes);
 }
 
 void Bus::answer(const request_t& request) {
@@ -92,16 +156,57 @@ void Bus::answer(const request_t& request) {
   const auto channel = published_.find(request.wanted_channel);
   bool found = false;
   if (channel != published_.end()) {
-    for (auto message = channel->second.lower_bound({request.view, request.attempt, 0});
-         message != channel->second.end() && message->first.view == request.view &&
-         (request.attempt == 0 || message->first.attempt == request.attempt);
-         ++message) {
-      found = true;
-      ++counters_.lost;
-      transport_->publish(channel->first, message->second);
+    Answers& answers = channel->second;
+    const auto first = answers.lower_bound({request.view, request.attempt, 0});
+    const auto asked_for = [&](Answers::const_iterator message) {
+      return message != answers.end() && message->first.view == request.view &&
+             (request.attempt == 0 || message->first.attempt == request.attempt);
+    };
+    found = asked_for(first);
+    const bool in_parts = found && asked_for(std::next(first)) && std::next(first)->first.part > 0;
+    const auto once_within =
+        in_parts ? std::min(kWholeOnceWithin, 10 * answer_once_within_) : answer_once_within_;
+    const auto now = Clock::now();
+    for (auto message = first; asked_for(message); ++message) {
+      send_again(channel->first, message->second, now, once_within);
     }
   }
   if (!found && missing_) missing_(request);
+}
+
+void Bus::answer_parts(const parts_request_t& request) {
+  if (request.asker == role_) return;
+  bool found = false;
+  if (const auto channel = published_.find(request.wanted_channel); channel != published_.end()) {
+    Answers& answers = channel->second;
+    const auto now = Clock::now();
+    for (std::size_t i = 0; i < request.first_wanted_part.size(); ++i) {
+      const MessageKey last{request.view, request.attempt, request.last_wanted_part[i]};
+      for (auto message =
+               answers.lower_bound({request.view, request.attempt, request.first_wanted_part[i]});
+           message != answers.end() && message->first <= last; ++message) {
+        found = true;
+        send_again(channel->first, message->second, now, answer_once_within_);
+      }
+    }
+  }
+  if (found || !missing_) return;
+  request_t whole{};
+  whole.run = request.run;
+  whole.view = request.view;
+  whole.attempt = request.attempt;
+  whole.wanted_channel = request.wanted_channel;
+  whole.asker = request.asker;
+  missing_(whole);
+}
+
+void Bus::forget_settled() {
+  constexpr int kMost = std::numeric_limits<std::int32_t>::max();
+  const MessageKey last{settled_views(), kMost, kMost};
+  if (last.view < 1) return;
+  for (auto& [channel, answers] : published_) {
+    answers.erase(answers.lower_bound({1, 0, 0}), answers.upper_bound(last));
+  }
 }
 
 void Bus::drop(std::string_view channel, std::string_view reason, std::int64_t count) {
@@ -127,7 +232,7 @@ bool Bus::is_new(std::string_view channel, const MessageKey& key,
   const auto published = published_.find(channel);
   if (published != published_.end()) {
     const auto own = published->second.find(key);
-    if (own != published->second.end() && !std::ranges::equal(own->second, bytes)) {
+    if (own != published->second.end() && !std::ranges::equal(own->second.bytes, bytes)) {
       drop(channel, describe(key) + " differs from the one published here");
       return false;
     }
@@ -149,6 +254,7 @@ void Bus::taken(std::string_view channel, const MessageKey& key,
                 std::span<const std::uint8_t> bytes) {
   heard_.take(channel, key, bytes);
   ++counters_.delivered;
+  note_come(channel, key);
   if (!early_.wait_for(channel)) return;
   more_to_judge_ = true;
   if (!judging_again_) judge_again();

@@ -25,13 +25,16 @@ class BusProcess {
   virtual std::chrono::milliseconds longest_wait() const {
     return std::chrono::milliseconds::max();
   }
+  /// Whether ask_again() would ask for anything: whether it waits for somebody to answer, and not
+  /// only for something new.
+  virtual bool waits() const { return true; }
   /// Requests what it waits for. Called on a timer, ever less often until something comes; at once
   /// while it is behind the run.
   virtual void ask_again() {}
   /// Whether it waits for a message of a view that the run had got to before it was started.
   virtual bool behind() const { return false; }
   /// Somebody waits for a message that has not been published: asks for its own input when the
-  /// message is one it will publish.
+  /// message is one it will publish, and waits for that from then on.
   virtual void on_missing(const request_t& request) = 0;
 
   /// It takes the place of one that has ended after the run had got to this view: everything up to

@@ -8,7 +8,9 @@
 #include <nextview/goal_t.hpp>
 #include <nextview/map_blocks_t.hpp>
 #include <nextview/pace_t.hpp>
+#include <nextview/parts_request_t.hpp>
 #include <nextview/range_image_t.hpp>
+#include <nextview/recorded_t.hpp>
 #include <nextview/request_t.hpp>
 #include <nextview/run_config_t.hpp>
 #include <nextview/search_t.hpp>
@@ -30,8 +32,9 @@ struct TypeList {
 
 /// Every type of message. Whoever handles all of them goes by this list: for_each_channel, the
 /// encoder, the tests of every type. A test holds it against the .lcm files of this folder.
-using AllMessages = TypeList<run_config_t, goal_t, search_t, arrival_t, range_image_t, commit_t,
-                             stop_t, status_t, request_t, timing_t, map_blocks_t, pace_t>;
+using AllMessages =
+    TypeList<run_config_t, goal_t, search_t, arrival_t, range_image_t, commit_t, stop_t, status_t,
+             request_t, timing_t, map_blocks_t, pace_t, parts_request_t, recorded_t>;
 
 /// What tells the messages of one channel of one run apart.
 struct MessageKey {
@@ -164,6 +167,23 @@ struct Channel<map_blocks_t> {
 template <>
 struct Channel<pace_t> {
   static constexpr std::string_view name = "NEXTVIEW_PACE";
+  static constexpr bool answered = false;
+  static constexpr channel_detail::NoLengths lengths = {};
+  static constexpr int strings = 0;
+};
+
+template <>
+struct Channel<parts_request_t> {
+  static constexpr std::string_view name = "NEXTVIEW_PARTS_REQUEST";
+  static constexpr bool answered = false;
+  static constexpr std::array<LengthField, 1> lengths = {{{channel_detail::kFirstLength, 8}}};
+  static constexpr int strings = 2;
+};
+
+/// Published again whenever there is more.
+template <>
+struct Channel<recorded_t> {
+  static constexpr std::string_view name = "NEXTVIEW_RECORDED";
   static constexpr bool answered = false;
   static constexpr channel_detail::NoLengths lengths = {};
   static constexpr int strings = 0;

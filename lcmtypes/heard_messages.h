@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <map>
 #include <span>
@@ -20,12 +21,21 @@ class HeardMessages {
   Verdict judge(std::string_view channel, const MessageKey& key,
                 std::span<const std::uint8_t> bytes) const;
   void take(std::string_view channel, const MessageKey& key, std::span<const std::uint8_t> bytes);
+  /// From now on messages of the views before this one are all repeated, and nothing is remembered
+  /// of them.
+  void ignore_before(std::string_view channel, int view);
+  /// How many are remembered.
+  std::size_t size() const;
 
  private:
   using Hash = std::pair<std::uint64_t, std::uint64_t>;
   static Hash hash_of(std::span<const std::uint8_t> bytes);
 
-  std::map<std::string, std::map<MessageKey, Hash>, std::less<>> by_channel_;
+  struct Taken {
+    int from_view = 0;
+    std::map<MessageKey, Hash> hashes;
+  };
+  std::map<std::string, Taken, std::less<>> by_channel_;
 };
 
 }  // namespace nextview

@@ -11,22 +11,59 @@
 namespace nextview {
 namespace {
 
-AskTimer ask_timer() {
-  return AskTimer(std::chrono::milliseconds(100), std::chrono::milliseconds(800));
-}
+using std::chrono::milliseconds;
+using Clock = std::chrono::steady_clock;
+
+/// Several wait for the same message, and find at the same time that it does not come.
+constexpr milliseconds kAnswerOnceWithin{3};
 
 std::optional<run_config_t> wait_for_config(Bus& bus, const std::function<bool()>& ended) {
   // Shared with the handler, which outlives this function.
   const auto config = std::make_shared<std::optional<run_config_t>>();
   bus.on<run_config_t>([config](const run_config_t& message) { *config = message; });
   bus.request<run_config_t>(0, 0);
-  AskTimer timer = ask_timer();
+  AskTimer timer(milliseconds(20), ResponseTime::kLongestTimeout);
   while (!*config && !ended()) {
     bus.handle(timer.left());
     if (!*config && timer.due()) bus.request<run_config_t>(0, 0);
   }
   return *config;
 }
+
+/// A process that waits for an answer, and asks again in the time that answers take.
+class Waiting {
+ public:
+  explicit Waiting(Bus& bus) : bus_(bus) {}
+
+  void begins() {
+    if (waits_) return;
+    waits_ = true;
+    since_ = Clock::now();
+    timer_.restart(bus_.response_time().timeout());
+  }
+  /// Something has come, though not all that is waited for.
+  void goes_on() { timer_.restart(bus_.response_time().timeout()); }
+  /// There is work again.
+  void ends() {
+    if (waits_ && !asked_) bus_.note_response(Clock::now() - since_);
+    waits_ = asked_ = false;
+    goes_on();
+  }
+  bool due() { return timer_.due(); }
+  milliseconds left() const { return timer_.left(); }
+  void ask(BusProcess& process) {
+    asked_ = true;
+    process.ask_again();
+  }
+  bool has_asked() const { return asked_; }
+
+ private:
+  Bus& bus_;
+  AskTimer timer_{ResponseTime::kFirstTimeout, ResponseTime::kLongestTimeout};
+  Clock::time_point since_;
+  bool waits_ = false;
+  bool asked_ = false;
+};
 
 }  // namespace
 
@@ -54,32 +91,31 @@ void serve(Bus& bus, const MakeBusProcess& make, const std::function<bool()>& en
   bus.on_missing([&bus, &process](const request_t& request) {
     if (request.wanted_channel == Channel<status_t>::name) {
       publish_status(bus, "");
-    } else {
+    } else if (request.view == 0 || request.view > bus.settled_views()) {
       process->on_missing(request);
     }
   });
   publish_status(bus, "");
 
-  AskTimer timer = ask_timer();
-  bool asked = false;
+  bus.answer_once_within(kAnswerOnceWithin);
+  Waiting waiting(bus);
   while (!ended()) {
     if (process->step()) {
-      timer.restart();
-      asked = false;
+      waiting.ends();
       continue;
     }
-    if (!asked && process->behind()) process->ask_again();
-    asked = true;
+    if (process->waits()) waiting.begins();
+    if (process->behind() && !waiting.has_asked()) waiting.ask(*process);
     const std::int64_t delivered = bus.counters().delivered;
     // All that is there, so that no step is taken on half of what has been said.
-    for (bool more = bus.handle(std::min(timer.left(), process->longest_wait()));
+    for (bool more = bus.handle(std::min(waiting.left(), process->longest_wait()));
          more && !ended();) {
-      more = bus.handle(std::chrono::milliseconds(0));
+      more = bus.handle(milliseconds(0));
     }
     if (bus.counters().delivered != delivered) {
-      timer.restart();
-    } else if (timer.due()) {
-      process->ask_again();
+      waiting.goes_on();
+    } else if (waiting.due()) {
+      waiting.ask(*process);
     }
   }
 }

@@ -78,6 +78,16 @@ void check_names(Checks& checks, std::string_view field, std::string_view list,
   }
 }
 
+/// What somebody asks for, and who.
+template <class Request>
+void check_wanted(Checks& checks, const Request& request) {
+  bool known = false;
+  for_each_channel(
+      [&]<class Message>() { known |= request.wanted_channel == Channel<Message>::name; });
+  checks.require(known, "asks for a channel nobody has");
+  checks.require(!request.asker.empty(), "no asker");
+}
+
 std::int64_t occupied_in(const map_blocks_t& blocks) {
   constexpr std::uint8_t kOccupied = 4;
   std::int64_t occupied = 0;
@@ -214,11 +224,7 @@ std::string check(const request_t& request) {
   checks.not_negative("utime", static_cast<double>(request.utime));
   checks.require(request.view >= 0, fmt::format("view {}", request.view));
   checks.require(request.attempt >= 0, fmt::format("attempt {}", request.attempt));
-  bool known = false;
-  for_each_channel(
-      [&]<class Message>() { known |= request.wanted_channel == Channel<Message>::name; });
-  checks.require(known, "asks for a channel nobody has");
-  checks.require(!request.asker.empty(), "no asker");
+  check_wanted(checks, request);
   return checks.reason();
 }
 
@@ -264,6 +270,32 @@ std::string check(const pace_t& pace) {
   checks.require(pace.pace_number >= 0, "pace_number " + std::to_string(pace.pace_number));
   checks.require(pace.last_view >= 0, "last_view " + std::to_string(pace.last_view));
   checks.within("holds_s", pace.holds_s, 0.0, kLongestHold_s);
+  return checks.reason();
+}
+
+std::string check(const parts_request_t& request) {
+  Checks checks;
+  checks.not_negative("utime", static_cast<double>(request.utime));
+  checks.require(request.view >= 1, fmt::format("view {}", request.view));
+  checks.require(request.attempt >= 1, fmt::format("attempt {}", request.attempt));
+  checks.require(request.ranges >= 1, "asks for no part");
+  std::int64_t before = -1;
+  for (std::size_t i = 0; i < request.first_wanted_part.size(); ++i) {
+    const std::int32_t first = request.first_wanted_part[i];
+    const std::int32_t last = request.last_wanted_part[i];
+    checks.require(first > before && last >= first,
+                   fmt::format("parts {} to {} after part {}", first, last, before));
+    before = last;
+  }
+  check_wanted(checks, request);
+  return checks.reason();
+}
+
+std::string check(const recorded_t& recorded) {
+  Checks checks;
+  checks.require(recorded.utime == 0, fmt::format("utime {} is not 0", recorded.utime));
+  checks.require(recorded.recorded_views >= 0,
+                 fmt::format("recorded_views {}", recorded.recorded_views));
   return checks.reason();
 }
 

@@ -24,6 +24,8 @@ std::string check(const request_t& request);
 std::string check(const timing_t& timing);
 std::string check(const map_blocks_t& blocks);
 std::string check(const pace_t& pace);
+std::string check(const parts_request_t& request);
+std::string check(const recorded_t& recorded);
 
 /// The names of a comma separated list, as goal_t::factor_names; none of an empty text.
 std::vector<std::string_view> names_of(std::string_view list);

@@ -302,6 +302,27 @@ struct MessageFields<pace_t> {
                                       NamedField{"holds_s", &M::holds_s}};
 };
 
+template <>
+struct MessageFields<parts_request_t> {
+  using M = parts_request_t;
+  static constexpr auto list = std::tuple{NamedField{"utime", &M::utime},
+                                          NamedField{"ranges", &M::ranges},
+                                          NamedField{"run", &M::run},
+                                          NamedField{"view", &M::view},
+                                          NamedField{"attempt", &M::attempt},
+                                          NamedField{"first_wanted_part", &M::first_wanted_part},
+                                          NamedField{"last_wanted_part", &M::last_wanted_part},
+                                          NamedField{"wanted_channel", &M::wanted_channel},
+                                          NamedField{"asker", &M::asker}};
+};
+
+template <>
+struct MessageFields<recorded_t> {
+  using M = recorded_t;
+  static constexpr std::tuple list = {NamedField{"utime", &M::utime}, NamedField{"run", &M::run},
+                                      NamedField{"recorded_views", &M::recorded_views}};
+};
+
 namespace message_fields_detail {
 template <class T>
 concept HasFields = requires {

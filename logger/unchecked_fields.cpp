@@ -19,6 +19,8 @@ std::vector<UncheckedFields> unchecked_fields(const RunRecord& run, bool planner
       {kForPeople, Channel<timing_t>::name, {"*"}},
       {kForPeople, Channel<status_t>::name, {"*"}},
       {kForPeople, Channel<request_t>::name, {"*"}},
+      {kForPeople, Channel<parts_request_t>::name, {"*"}},
+      {kForPeople, Channel<recorded_t>::name, {"*"}},
       {"for others that follow the map, whose digest is in the commits",
        Channel<map_blocks_t>::name,
        {"*"}},

@@ -73,7 +73,10 @@ void MapperProcess::fold(const ReceivedRangeImage& received) {
   bus_.publish(timing_message(bus_.role(), received.utime, received.view, received.attempt,
                               {{"update", update_wall_s}, {"digest", digest_wall_s}}));
   utime_ = received.utime;
+  assembler_.forget_until(next_view_);
+  waiting_.erase(waiting_.begin(), waiting_.upper_bound(next_view_));
   ++next_view_;
+  bus_.ignore_before<range_image_t>(next_view_);
 }
 
 // An answer is all of one view: what is folded while it is published waits for the next.
@@ -93,12 +96,18 @@ bool MapperProcess::publish_blocks() {
 }
 
 void MapperProcess::ask_again() {
-  if (!waiting_.empty() || behind()) bus_.request<range_image_t>(next_view_, 0);
+  if (waits()) request_range_image(bus_, assembler_, next_view_, 0);
+}
+
+bool MapperProcess::waits() const {
+  return !waiting_.empty() || behind() || asked_for_view_ >= next_view_ ||
+         assembler_.has_part_of(next_view_);
 }
 
 void MapperProcess::on_missing(const request_t& request) {
   if (request.wanted_channel == Channel<commit_t>::name) {
-    bus_.request<range_image_t>(request.view, request.attempt);
+    asked_for_view_ = std::max(asked_for_view_, request.view);
+    request_range_image(bus_, assembler_, request.view, request.attempt);
   }
   // Whoever asks again before the answer begins gets one.
   if (request.wanted_channel != Channel<map_blocks_t>::name) return;

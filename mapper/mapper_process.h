@@ -32,6 +32,7 @@ class MapperProcess : public BusProcess {
   /// Asks for the view that later ones, already here, wait for; or, when it has been started again,
   /// for the next one it has not folded yet.
   void ask_again() override;
+  bool waits() const override;
   bool behind() const override { return next_view_ <= reached(); }
   void on_missing(const request_t& request) override;
 
@@ -47,6 +48,7 @@ class MapperProcess : public BusProcess {
   RangeImageAssembler assembler_;
   std::map<int, ReceivedRangeImage> waiting_;  // by view; the first attempt that came whole counts
   int next_view_ = 1;
+  int asked_for_view_ = 0;               // the latest view whose commit somebody waits for
   std::string history_digest_;           // of the last commit
   std::optional<BlockHistory> history_;  // of a map in one buffer
   bool refusal_said_ = false;

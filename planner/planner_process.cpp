@@ -85,6 +85,8 @@ void PlannerProcess::fold(const ReceivedRangeImage& received) {
   const auto start = Clock::now();
   wait_wall_s_ = seconds_between(idle_since_, start);
   planner_->fold(received.image);
+  assembler_.forget_until(received.view);
+  bus_.ignore_before<range_image_t>(received.view + 1);
   digest_ = planner_->builder().digest();
   utime_ = received.utime;
   folded_ = true;
@@ -99,6 +101,10 @@ void PlannerProcess::finish_view(const commit_t& commit) {
                                          commit.map_digest + ", the planner's " + digest_);
     return;
   }
+  commits_.erase(commits_.begin(), commits_.upper_bound(view_));
+  refusals_.erase(refusals_.begin(), refusals_.upper_bound({view_, attempt_}));
+  bus_.ignore_before<commit_t>(view_ + 1);
+  bus_.ignore_before<arrival_t>(view_);
   ++view_;
   attempt_ = 1;
   folded_ = false;
@@ -170,11 +176,11 @@ void PlannerProcess::stop(StopReason reason, const std::string& detail) {
 }
 
 void PlannerProcess::ask_again() {
-  if (ended_ || held_) return;
+  if (!waits()) return;
   if (folded_) {
     bus_.request<commit_t>(view_, 0);
   } else {
-    bus_.request<range_image_t>(view_, attempt_);
+    request_range_image(bus_, assembler_, view_, attempt_);
   }
 }
 

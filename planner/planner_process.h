@@ -32,6 +32,7 @@ class PlannerProcess : public BusProcess {
   /// Asks for the range image or the commit of the present view. Whoever lacks its own input for
   /// that asks for it in turn, down to the goal.
   void ask_again() override;
+  bool waits() const override { return view_ > 0 && !ended_ && !held_; }
   /// One that has been started again decides all anew, on the same range images and refusals as the
   /// one before it, and says the same.
   bool behind() const override { return !ended_ && view_ <= reached(); }

@@ -214,4 +214,40 @@ std::vector<MessageKey> RangeImageAssembler::incomplete() const {
   return keys;
 }
 
+bool RangeImageAssembler::has_part_of(int view) const {
+  const auto first = assemblies_.lower_bound({view, 0, 0});
+  return first != assemblies_.end() && first->first.view == view;
+}
+
+std::vector<PartRange> RangeImageAssembler::lacking(int view, int attempt) const {
+  const auto found = assemblies_.find({view, attempt, 0});
+  if (found == assemblies_.end() || found->second.parts.empty()) return {};
+  const std::map<int, range_image_t>& parts = found->second.parts;
+  std::vector<PartRange> ranges;
+  int next = 0;
+  for (const auto& [number, part] : parts) {
+    if (number > next) ranges.push_back({next, number - 1});
+    next = number + 1;
+  }
+  const int all = parts.begin()->second.parts;
+  if (next < all) ranges.push_back({next, all - 1});
+  return ranges;
+}
+
+void RangeImageAssembler::forget_until(int view) {
+  assemblies_.erase(assemblies_.begin(), assemblies_.lower_bound({view + 1, 0, 0}));
+}
+
+void request_range_image(Bus& bus, const RangeImageAssembler& assembler, int view, int attempt) {
+  bool in_parts = false;
+  for (const MessageKey& key : assembler.incomplete()) {
+    if (key.view != view || (attempt != 0 && key.attempt != attempt)) continue;
+    const std::vector<PartRange> parts = assembler.lacking(key.view, key.attempt);
+    if (parts.empty()) continue;
+    bus.request_parts<range_image_t>(key.view, key.attempt, parts);
+    in_parts = true;
+  }
+  if (!in_parts) bus.request<range_image_t>(view, attempt);
+}
+
 }  // namespace nextview

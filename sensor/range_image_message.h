@@ -51,6 +51,12 @@ class RangeImageAssembler {
 
   /// View and attempt of the images of which only some parts have come.
   std::vector<MessageKey> incomplete() const;
+  /// Whether some parts of an image of this view are here, and some are not.
+  bool has_part_of(int view) const;
+  /// The parts of an image that have not come; none when none of them has.
+  std::vector<PartRange> lacking(int view, int attempt) const;
+  /// Forgets what has come of the images up to this view.
+  void forget_until(int view);
 
  private:
   struct Assembly {
@@ -59,5 +65,10 @@ class RangeImageAssembler {
   };
   std::map<MessageKey, Assembly> assemblies_;  // by view and attempt
 };
+
+/// Asks for what is lacking of the range image of a view: for the parts, when others have come, and
+/// for all of it when none has.
+/// @param attempt 0: of every attempt
+void request_range_image(Bus& bus, const RangeImageAssembler& assembler, int view, int attempt);
 
 }  // namespace nextview

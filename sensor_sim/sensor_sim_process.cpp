@@ -28,6 +28,7 @@ SensorSimProcess::SensorSimProcess(Bus& bus, const run_config_t& config,
       baseline_m_(baseline_m_of(sensor_of(config))),
       real_time_(real_time) {
   bus_.on<arrival_t>([this](const arrival_t& arrival) {
+    if (asked_for_ && arrival.view >= asked_for_->view) asked_for_.reset();
     if (arrival.arrived == 0) return;
     arrivals_.emplace(key_of(arrival), arrival);
     to_scan_.push_back(key_of(arrival));
@@ -77,6 +78,10 @@ void SensorSimProcess::publish_scanned() {
   bus_.publish(scanned_->timing);
   scanned_.reset();
   bus_.forget_before<range_image_t>(latest_view_ - kViewsRemembered);
+  const int settled = bus_.settled_views();
+  arrivals_.erase(arrivals_.begin(), arrivals_.lower_bound({settled + 1, 0, 0}));
+  std::erase_if(to_scan_, [settled](const MessageKey& key) { return key.view <= settled; });
+  bus_.ignore_before<arrival_t>(settled + 1);
 }
 
 std::chrono::milliseconds SensorSimProcess::longest_wait() const {
@@ -85,6 +90,7 @@ std::chrono::milliseconds SensorSimProcess::longest_wait() const {
 
 void SensorSimProcess::ask_again() {
   if (behind()) bus_.request<arrival_t>(reached(), 0);
+  if (asked_for_) bus_.request<arrival_t>(asked_for_->view, asked_for_->attempt);
 }
 
 void SensorSimProcess::on_missing(const request_t& request) {
@@ -98,7 +104,9 @@ void SensorSimProcess::on_missing(const request_t& request) {
     forgotten = true;
     if (std::find(to_scan_.begin(), to_scan_.end(), key) == to_scan_.end()) to_scan_.push_back(key);
   }
-  if (!forgotten) bus_.request<arrival_t>(request.view, request.attempt);
+  if (forgotten) return;
+  asked_for_ = key_of(request);
+  bus_.request<arrival_t>(request.view, request.attempt);
 }
 
 }  // namespace nextview

@@ -28,6 +28,7 @@ class SensorSimProcess : public BusProcess {
   /// Asks for the latest arrival when it has been started again; those before come when somebody
   /// asks for their range images.
   void ask_again() override;
+  bool waits() const override { return behind() || asked_for_; }
   bool behind() const override { return arrivals_.empty() && reached() > 0; }
   /// Scans again when a range image is asked for that the bus has forgotten: the same image.
   void on_missing(const request_t& request) override;
@@ -46,9 +47,10 @@ class SensorSimProcess : public BusProcess {
   Scene scene_;
   RayTable rays_;
   double baseline_m_;                         ///< of a line striper
-  std::map<MessageKey, arrival_t> arrivals_;  // all of them
+  std::map<MessageKey, arrival_t> arrivals_;  // all that may have to be scanned at again
   std::deque<MessageKey> to_scan_;            // of arrivals_
   int latest_view_ = 0;                       // scanned
+  std::optional<MessageKey> asked_for_;       // somebody waits for a scan at this arrival
   RealTime real_time_;
   std::optional<Scanned> scanned_;  // not published yet: the scan is under way
 };

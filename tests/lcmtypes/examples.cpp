@@ -216,4 +216,26 @@ pace_t example() {
   return pace;
 }
 
+template <>
+parts_request_t example() {
+  parts_request_t request{};
+  request.run = 7;
+  request.view = 2;
+  request.attempt = 1;
+  request.ranges = 2;
+  request.first_wanted_part = {0, 4};
+  request.last_wanted_part = {0, 9};
+  request.wanted_channel = "NEXTVIEW_RANGE_IMAGE"s;
+  request.asker = "mapper"s;
+  return request;
+}
+
+template <>
+recorded_t example() {
+  recorded_t recorded{};
+  recorded.run = 7;
+  recorded.recorded_views = 3;
+  return recorded;
+}
+
 }  // namespace nextview

@@ -32,5 +32,9 @@ template <>
 map_blocks_t example();
 template <>
 pace_t example();
+template <>
+parts_request_t example();
+template <>
+recorded_t example();
 
 }  // namespace nextview

@@ -281,6 +281,31 @@ TEST(Validate, Paces) {
   });
 }
 
+TEST(Validate, RequestsForParts) {
+  expect_all_refused<parts_request_t>({
+      {"no view", [](parts_request_t& m) { m.view = 0; }},
+      {"no attempt", [](parts_request_t& m) { m.attempt = 0; }},
+      {"no part",
+       [](parts_request_t& m) {
+         m.ranges = 0;
+         m.first_wanted_part.clear();
+         m.last_wanted_part.clear();
+       }},
+      {"a negative part", [](parts_request_t& m) { m.first_wanted_part[0] = -1; }},
+      {"a range that ends before it begins", [](parts_request_t& m) { m.last_wanted_part[1] = 3; }},
+      {"ranges that overlap", [](parts_request_t& m) { m.first_wanted_part[1] = 0; }},
+      {"a channel nobody has", [](parts_request_t& m) { m.wanted_channel = "NEXTVIEW_GOALS"; }},
+      {"no asker", [](parts_request_t& m) { m.asker.clear(); }},
+  });
+}
+
+TEST(Validate, WhatIsRecorded) {
+  expect_all_refused<recorded_t>({
+      {"simulated time", [](recorded_t& m) { m.utime = 1; }},
+      {"a negative view", [](recorded_t& m) { m.recorded_views = -1; }},
+  });
+}
+
 TEST(Validate, NamesOfAList) {
   EXPECT_EQ(names_of(""), std::vector<std::string_view>{});
   EXPECT_EQ(names_of("a"), std::vector<std::string_view>{"a"});
