@@ -121,6 +121,7 @@ struct UdpmReader::Shared {
   const bool own_only;
   UdpmSocket socket;
   OwnAddresses own;
+  sockaddr_in from{};  // who sent the last datagram
   std::atomic<bool> ended = false;
   std::atomic<bool> any_refused = false;
   Bell stop;
@@ -150,10 +151,13 @@ void UdpmReader::Shared::read_on() {
 }
 
 bool UdpmReader::Shared::read_one(std::vector<std::uint8_t>& buffer) {
-  sockaddr_in from{};
-  socklen_t from_size = sizeof from;
-  const ssize_t size = recvfrom(socket.fd(), buffer.data(), buffer.size(), MSG_DONTWAIT,
-                                reinterpret_cast<sockaddr*>(&from), &from_size);
+  iovec piece{buffer.data(), buffer.size()};
+  msghdr header{};
+  header.msg_name = &from;
+  header.msg_namelen = sizeof from;
+  header.msg_iov = &piece;
+  header.msg_iovlen = 1;
+  const ssize_t size = recvmsg(socket.fd(), &header, MSG_DONTWAIT);
   if (size < 0) {
     if (errno == EINTR) return true;
     if (errno == EAGAIN || errno == EWOULDBLOCK) return false;
@@ -161,11 +165,11 @@ bool UdpmReader::Shared::read_one(std::vector<std::uint8_t>& buffer) {
     error = errno;
     return false;
   }
+  if (size < 8) return true;  // somebody's test of the network, as multicast_probe's is
   if (own_only && !own.contain(from.sin_addr)) {
     refuse("from another machine, though nothing is sent to any (ttl=0)");
     return true;
   }
-  if (size < 8) return true;  // somebody's test of the network, as multicast_probe's is
   const LcmDatagram datagram = read_lcm_datagram({buffer.data(), static_cast<std::size_t>(size)});
   if (datagram.refusal.empty()) {
     take(datagram);

@@ -3,10 +3,17 @@
 #include <lcm/eventlog.h>
 #include <sys/stat.h>
 
+#include <array>
+#include <cstdint>
 #include <cstdio>
 #include <utility>
 
 namespace nextview {
+namespace {
+
+constexpr long kHeaderBytes = 28;  // of a message in a log
+
+}  // namespace
 
 struct LogReader::File {
   explicit File(const std::filesystem::path& file)
@@ -16,6 +23,26 @@ struct LogReader::File {
   File(const File&) = delete;
   File& operator=(const File&) = delete;
   ~File() { lcm_eventlog_destroy(log); }
+
+  /// The size of the whole message that comes next when its channel has no name, at which LCM's own
+  /// reader stops; lcm-logger writes down what anybody says. Else 0. Moves in the file.
+  long nameless_bytes() const {
+    std::array<unsigned char, kHeaderBytes> header{};
+    if (std::fread(header.data(), header.size(), 1, log->f) != 1) return 0;
+    const auto number_at = [&header](std::size_t at) {
+      return std::uint32_t{header[at]} << 24 | std::uint32_t{header[at + 1]} << 16 |
+             std::uint32_t{header[at + 2]} << 8 | std::uint32_t{header[at + 3]};
+    };
+    constexpr std::uint32_t kSyncWord = 0xEDA1DA01;
+    constexpr std::uint32_t kLargestDatagram = 1 << 16;
+    const std::uint32_t data_bytes = number_at(24);
+    if (number_at(0) != kSyncWord || number_at(20) != 0 || data_bytes > kLargestDatagram) return 0;
+    const long size = kHeaderBytes + static_cast<long>(data_bytes);
+    struct stat status {};
+    const bool whole =
+        ::fstat(::fileno(log->f), &status) == 0 && status.st_size - end_of_last >= size;
+    return whole ? size : 0;
+  }
 
   std::filesystem::path path;
   lcm_eventlog_t* log;
@@ -37,10 +64,14 @@ std::optional<LoggedMessage> LogReader::next() {
   // A message only half written is read again from its beginning when the file has grown.
   std::clearerr(file_->log->f);
   if (std::fseek(file_->log->f, file_->end_of_last, SEEK_SET) != 0) return std::nullopt;
+  if (const long size = file_->nameless_bytes(); size > 0) {
+    file_->end_of_last += size;
+    return LoggedMessage{};
+  }
+  if (std::fseek(file_->log->f, file_->end_of_last, SEEK_SET) != 0) return std::nullopt;
   lcm_eventlog_event_t* event = lcm_eventlog_read_next_event(file_->log);
   if (event == nullptr) return std::nullopt;
   // LCM looks at the sync word of the next message, and forgets to go back when it is half written.
-  constexpr long kHeaderBytes = 28;
   constexpr long kSyncWordBytes = 4;
   const long end = file_->end_of_last + kHeaderBytes + event->channellen + event->datalen;
   const long position = std::ftell(file_->log->f);
