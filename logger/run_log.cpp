@@ -11,10 +11,10 @@ namespace nextview {
 
 RunLog::RunLog(const std::filesystem::path& file, std::optional<std::int64_t> run,
                RangeImages range_images)
-    : reader_(file), run_(run), record_(range_images) {}
+    : file_(file), reader_(file), run_(run), record_(range_images) {}
 
 void RunLog::read_on() {
-  while (auto message = reader_.next()) {
+  for (begin_ = reader_.position(); auto message = reader_.next(); begin_ = reader_.position()) {
     ++counters_.messages;
     if (!run_ && message->channel != Channel<run_config_t>::name) {
       before_config_.push_back(std::move(*message));
@@ -24,6 +24,24 @@ void RunLog::read_on() {
     if (!run_ || before_config_.empty()) continue;
     for (const LoggedMessage& earlier : std::exchange(before_config_, {})) take(earlier);
   }
+}
+
+void RunLog::note_begin(int view) {
+  if (view > settled_views_) begin_of_view_.try_emplace(view, begin_);
+}
+
+std::int64_t RunLog::begin_of_view(int view) const {
+  const auto begin = begin_of_view_.find(view);
+  return begin == begin_of_view_.end() ? 0 : begin->second;
+}
+
+void RunLog::settle(int views) {
+  settled_views_ = std::max(settled_views_, views);
+  begin_of_view_.erase(begin_of_view_.begin(), begin_of_view_.upper_bound(settled_views_));
+  const std::string images(Channel<range_image_t>::name);
+  seen_.erase(seen_.lower_bound({images, {}}),
+              seen_.lower_bound({images, {settled_views_ + 1, 0, 0}}));
+  record_.forget_searches(settled_views_);
 }
 
 void RunLog::take(const LoggedMessage& message) {
@@ -58,6 +76,12 @@ void RunLog::take_as(const LoggedMessage& message) {
   ++counters_.ours;
   if constexpr (Channel<Message>::answered) {
     const MessageKey key = key_of(*decoded.message);
+    if constexpr (std::is_same_v<Message, range_image_t>) {
+      if (key.view <= settled_views_) {
+        ++counters_.repeated;
+        return;
+      }
+    }
     const XXH128_hash_t hash = XXH3_128bits(message.bytes.data(), message.bytes.size());
     const auto [seen, is_new] =
         seen_.emplace(std::pair(message.channel, key), Hash(hash.high64, hash.low64));
@@ -80,6 +104,7 @@ void RunLog::take_as(const LoggedMessage& message) {
   if constexpr (requires { record_.add(*decoded.message); }) {
     try {
       record_.add(*decoded.message);
+      if constexpr (Channel<Message>::answered) note_begin(key_of(*decoded.message).view);
     } catch (const RejectedMessage& rejected) {
       const MessageKey key = key_of(*decoded.message);
       dropped_.push_back(describe(MissingMessage{Channel<Message>::name, key.view, key.attempt}) +

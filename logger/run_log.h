@@ -36,6 +36,15 @@ class RunLog {
   /// Takes in what has been written since the last call.
   void read_on();
 
+  /// Of views that are whole: what they tried is freed, and so is what tells whether a range image
+  /// that comes again is the same. Only while the run goes on; a replay looks at everything.
+  void settle(int views);
+  /// Where the first message of a view that is not settled begins.
+  std::int64_t begin_of_view(int view) const;
+  /// Where the last message read ends.
+  std::int64_t position() const { return reader_.position(); }
+  const std::filesystem::path& file() const { return file_; }
+
   const RunRecord& record() const { return record_; }
   RunRecord& record() { return record_; }
   const LogCounters& counters() const { return counters_; }
@@ -60,6 +69,9 @@ class RunLog {
   template <class Message>
   void take_as(const LoggedMessage& message);
 
+  void note_begin(int view);
+
+  std::filesystem::path file_;
   LogReader reader_;
   std::optional<std::int64_t> run_;
   RunRecord record_;
@@ -69,6 +81,9 @@ class RunLog {
   std::vector<std::string> contradictions_;
   std::vector<std::string> later_ends_;
   std::map<std::pair<std::string, MessageKey>, Hash> seen_;
+  std::map<int, std::int64_t> begin_of_view_;  // of those that are not settled
+  std::int64_t begin_ = 0;                     // of the message under way
+  int settled_views_ = 0;
   std::vector<LoggedMessage> before_config_;  // while the run is not known
 };
 

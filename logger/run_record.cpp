@@ -165,7 +165,7 @@ std::vector<MissingMessage> RunRecord::missing() const {
   if (!config_) missing.push_back(missing_message<run_config_t>(0, 0));
   if (!stop_) missing.push_back(missing_message<stop_t>(0, 0));
   const int views = stop_ ? std::max(stop_->views, views_taken()) : latest_view();
-  for (int view = 1; view <= views; ++view) {
+  for (int view = whole_views() + 1; view <= views; ++view) {
     const auto of_view = missing_of_view(view);
     missing.insert(missing.end(), of_view.begin(), of_view.end());
   }
@@ -178,6 +178,19 @@ std::vector<MissingMessage> RunRecord::missing() const {
     }
   }
   return missing;
+}
+
+int RunRecord::whole_views() const {
+  while (commit(whole_views_ + 1) && missing_of_view(whole_views_ + 1).empty()) ++whole_views_;
+  return whole_views_;
+}
+
+void RunRecord::forget_searches(int view) {
+  for (auto search = searches_.lower_bound({searches_forgotten_until_ + 1, 0, 0});
+       search != searches_.end() && search->first.view <= view; ++search) {
+    search->second = {};
+  }
+  searches_forgotten_until_ = std::max(searches_forgotten_until_, view);
 }
 
 int RunRecord::committed_views() const { return commits_.empty() ? 0 : commits_.rbegin()->first; }

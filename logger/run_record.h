@@ -84,6 +84,10 @@ class RunRecord {
   /// What a whole run needs and is not there, for every view taken, whatever its end says.
   /// Before the stop: what the views so far need.
   std::vector<MissingMessage> missing() const;
+  /// The view up to which everything is here that a whole run needs.
+  int whole_views() const;
+  /// Frees what the searches up to this view tried; they still count as there.
+  void forget_searches(int view);
   /// The last view that was committed, or 0.
   int committed_views() const;
   /// The last view that must have been taken: committed, or followed by something of a later one.
@@ -93,6 +97,8 @@ class RunRecord {
   int final_attempt(int view) const;
   /// Every goal, search, arrival, whole range image and commit that is here.
   std::vector<MissingMessage> held() const;
+  /// The parts of range images of which others are lacking.
+  const RangeImageAssembler& range_image_parts() const { return assembler_; }
   /// Range images of which some parts are here, and some are not.
   std::vector<MissingMessage> held_in_part() const;
 
@@ -112,6 +118,8 @@ class RunRecord {
   std::set<MessageKey> whole_images_;
   std::map<MessageKey, ReceivedRangeImage> images_;
   std::set<std::string> roles_;
+  mutable int whole_views_ = 0;  // as last looked: what is whole remains so
+  int searches_forgotten_until_ = 0;
 };
 
 }  // namespace nextview

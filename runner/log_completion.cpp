@@ -10,7 +10,10 @@ namespace nextview {
 using std::chrono::milliseconds;
 using Clock = HeardRun::Clock;
 
-void request(Bus& bus, const MissingMessage& missing) {
+void request(Bus& bus, const MissingMessage& missing, const RunRecord& here) {
+  if (missing.channel == Channel<range_image_t>::name) {
+    return request_range_image(bus, here.range_image_parts(), missing.view, missing.attempt);
+  }
   for_each_channel([&]<class Message>() {
     if (missing.channel == Channel<Message>::name) {
       bus.request<Message>(missing.view, missing.attempt);
@@ -77,7 +80,7 @@ void read_log_to_its_end(RunLog& log, Bus& bus, const HeardRun& heard) {
     std::size_t asked = 0;
     for (const MissingMessage& message : lacking) {
       if (++asked > kAtATime) break;
-      if (!publish_again(bus, message, heard.record)) request(bus, message);
+      if (!publish_again(bus, message, heard.record)) request(bus, message, logged);
     }
   }
 }

@@ -9,8 +9,9 @@
 
 namespace nextview {
 
-/// Asks whoever published it for a message, so that it comes once more.
-void request(Bus& bus, const MissingMessage& missing);
+/// Asks whoever published it for a message, so that it comes once more; of a range image for the
+/// parts that are not here.
+void request(Bus& bus, const MissingMessage& missing, const RunRecord& here);
 
 /// What has been heard, or must have been said, and is not in the log.
 std::set<MissingMessage> lacking_in_log(const RunRecord& logged, const RunRecord& heard);

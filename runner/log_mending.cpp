@@ -24,7 +24,7 @@ void LogMending::step(RunLog& log, Bus& bus, const HeardRun& heard) {
   std::size_t asked = 0;
   for (const MissingMessage& message : lacking) {
     if (++asked > kAtATime) break;
-    if (!publish_again(bus, message, heard.record)) request(bus, message);
+    if (!publish_again(bus, message, heard.record)) request(bus, message, log.record());
   }
 }
 

@@ -46,6 +46,9 @@ bool all_of(const std::set<std::string>& roles, const std::set<std::string>& hea
   return std::includes(heard_of.begin(), heard_of.end(), roles.begin(), roles.end());
 }
 
+/// How long something must be missing before it is asked for, where nobody waits for it to go on.
+constexpr milliseconds kLeastMissed{50};
+
 /// Waits from first on up to two seconds.
 AskTimer reminder_after(milliseconds first) { return AskTimer(first, milliseconds(2000)); }
 
@@ -126,6 +129,9 @@ void RunSupervisor::join_bus() {
     lcm_url_ = port_->lcm_url();
   }
   bus_ = std::make_unique<Bus>(lcm_url_, setup_.config.run, "run");
+  heard_.on_missing = [this](const request_t& request) {
+    if (!log_keeping_.answer(*bus_, request) && earlier_) earlier_->answer(*bus_, request);
+  };
   heard_.listen(*bus_);
 }
 
@@ -149,7 +155,6 @@ void RunSupervisor::take_up_again() {
     make_rows();  // no range image is kept for longer than it is needed
   });
   reached_ = heard_.record.latest_view();
-  heard_.on_missing = [this](const request_t& request) { earlier_->answer(*bus_, request); };
   recorder_began_anew_ = true;
   recording();
   logged_before_ = log_->counters().ours;
@@ -238,24 +243,33 @@ void RunSupervisor::start_scoring() {
 
 void RunSupervisor::watch() {
   give_way();  // from here on this process only looks on
-  AskTimer reminder = reminder_after(milliseconds(300));
-  auto reminded_since = heard_.last_progress;
+  // Most often nothing is lost and somebody works: then less and less often.
+  AskTimer reminder = reminder_after(kLeastMissed);
+  int reminded_after = 0;
   const RunRecord& record = heard_.record;
   while (!record.stop() || !record.missing().empty()) {
     pump(milliseconds(20));
     log_mending_.step(*log_, *bus_, heard_);
+    log_keeping_.step(*log_, *bus_, heard_);
     make_rows();
-    if (reminded_since != heard_.last_progress) {
-      reminded_since = heard_.last_progress;
-      reminder.restart();
-    }
-    // Most often nothing is lost and somebody works; asking costs little, and else nobody would
-    // make good what only this listener has missed.
-    if (reminder.due()) {
-      for (const MissingMessage& missing : record.missing()) request(*bus_, missing);
+    if (!reminder.due()) continue;
+    ask_for_missed();
+    if (const int views = record.committed_views(); views != std::exchange(reminded_after, views)) {
+      reminder.restart(std::max(kLeastMissed, 2 * bus_->response_time().timeout()));
     }
   }
   make_rows();
+}
+
+void RunSupervisor::ask_for_missed() {
+  // What was missing when it was looked before, too: what only this listener has missed nobody else
+  // makes good.
+  std::set<MissingMessage> missed;
+  for (const MissingMessage& missing : heard_.record.missing()) {
+    if (missed_.contains(missing)) request(*bus_, missing, heard_.record);
+    missed.insert(missing);
+  }
+  missed_ = std::move(missed);
 }
 
 void RunSupervisor::make_rows(milliseconds wait_for_scoring) {
@@ -285,10 +299,17 @@ void RunSupervisor::complete_log() {
     const std::vector<MissingMessage> missing = log_->record().missing();
     if (missing.empty()) return;
     // What is asked for is recorded too: the log grows, and is none the better for it.
-    if (missing != had_missing) heard_.last_progress = Clock::now();
+    if (missing != had_missing) {
+      heard_.last_progress = Clock::now();
+      reminder.restart(bus_->response_time().timeout());
+    }
     had_missing = missing;
     if (reminder.due()) {
-      for (const MissingMessage& message : missing) request(*bus_, message);
+      for (const MissingMessage& message : missing) {
+        if (!publish_again(*bus_, message, heard_.record)) {
+          request(*bus_, message, log_->record());
+        }
+      }
     }
     try {
       pump(milliseconds(5));

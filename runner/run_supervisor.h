@@ -14,6 +14,7 @@
 #include "runner/background_scoring.h"
 #include "runner/earlier_run.h"
 #include "runner/heard_run.h"
+#include "runner/log_keeping.h"
 #include "runner/log_mending.h"
 #include "runner/port_lock.h"
 #include "runner/restart_limit.h"
@@ -58,6 +59,7 @@ class RunSupervisor {
   bool config_recorded(AskTimer& reminder);
   void start_scoring();
   void watch();
+  void ask_for_missed();
   void complete_log();
   void collect_statuses();
   void end_early(const EndsEarly& end);
@@ -99,8 +101,10 @@ class RunSupervisor {
   RestartLimit restart_limit_;
   std::optional<RunLog> log_;
   std::int64_t logged_before_ = 0;  ///< messages of the run that were in the log at the start
+  LogKeeping log_keeping_;
   LogMending log_mending_;
   bool recorder_began_anew_ = false;
+  std::set<MissingMessage> missed_;  ///< when last looked
   std::optional<EndsEarly> ended_early_;
 
   std::optional<BackgroundScoring<NearSurface>> near_surface_;
