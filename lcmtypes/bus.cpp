@@ -260,22 +260,26 @@ void Bus::taken(std::string_view channel, const MessageKey& key,
   if (!judging_again_) judge_again();
 }
 
-void Bus::keep_early(std::string_view channel, std::span<const std::uint8_t> bytes,
-                     const TooEarly& early) {
-  constexpr std::chrono::milliseconds kNotOftener{20};
+void Bus::keep_early(std::string_view channel, const MessageKey& key,
+                     std::span<const std::uint8_t> bytes, const TooEarly& early) {
   const auto now = EarlyMessages::Clock::now();
-  EarlyMessages::Message message{std::string(channel),
-                                 {bytes.begin(), bytes.end()},
-                                 std::string(early.channel()),
-                                 early.what(),
-                                 early_since_.value_or(now)};
-  if (!early_.keep(std::move(message))) {
+  const bool kept = early.then() == TooEarly::Then::JudgeAgain;
+  if (!kept) drop(channel, early.what());
+  EarlyMessages::Message message{
+      std::string(channel),         key,          {},
+      std::string(early.channel()), early.what(), early_since_.value_or(now)};
+  if (kept) message.bytes.assign(bytes.begin(), bytes.end());
+  if (!early_.keep(std::move(message)) && kept) {
     return drop(channel, std::string(early.what()) + ", and no more such messages can be kept");
   }
   if (judging_again_) return;  // it has been asked for
+  // Once for all parts of an image; again when one of them comes again, or after a while.
+  constexpr std::chrono::milliseconds kLong{20};
   const MessageKey wanted{early.view(), early.attempt(), 0};
-  if (asked_early_.first == wanted && now - asked_early_.second < kNotOftener) return;
-  asked_early_ = {wanted, now};
+  const bool asked = asked_early_.wanted == wanted && asked_early_.for_whom != key &&
+                     now - asked_early_.when < kLong;
+  if (asked) return;
+  asked_early_ = {wanted, key, now};
   request_channel(early.channel(), early.view(), early.attempt());
 }
 
@@ -285,6 +289,10 @@ void Bus::judge_again() {
     while (std::exchange(more_to_judge_, false)) {
       for (const EarlyMessages::Message& message : early_.take_all()) {
         early_since_ = message.since;
+        if (message.bytes.empty()) {
+          request_channel(message.channel, message.key.view, message.key.attempt);
+          continue;
+        }
         receivers_.find(message.channel)->second(message.bytes);
       }
     }
@@ -299,7 +307,7 @@ void Bus::judge_again() {
 
 void Bus::drop_stale() {
   for (const EarlyMessages::Message& message : early_.take_stale(EarlyMessages::Clock::now())) {
-    drop(message.channel, message.reason);
+    if (!message.bytes.empty()) drop(message.channel, message.reason);
   }
 }
 

@@ -142,6 +142,13 @@ class Bus {
   /// asks for what it needs itself. The handler sees everybody's requests and picks its own.
   void on_missing(std::function<void(const request_t&)> handler);
 
+  /// Finds that a message that was taken cannot have been right: another one may come in its place.
+  template <class Message>
+  void take_back(const MessageKey& key, std::string_view reason) {
+    heard_.forget(Channel<Message>::name, key);
+    drop(Channel<Message>::name, reason);
+  }
+
   /// Waits for one message and handles it.
   /// @return false when none came within the timeout, or a signal interrupted the wait
   /// @throws what a handler throws, RejectedMessage, TooEarly and NotNow apart; BusError when the
@@ -159,6 +166,12 @@ class Bus {
   struct Asked {
     Clock::time_point first;
     int times = 0;
+  };
+  /// What was last asked for because of a message that came too early.
+  struct AskedEarly {
+    MessageKey wanted;
+    MessageKey for_whom;
+    Clock::time_point when;
   };
   using Answers = std::map<MessageKey, Published>;
 
@@ -190,8 +203,8 @@ class Bus {
   /// Whether a message is new; else it has been counted as repeated, or refused.
   bool is_new(std::string_view channel, const MessageKey& key, std::span<const std::uint8_t> bytes);
   void taken(std::string_view channel, const MessageKey& key, std::span<const std::uint8_t> bytes);
-  void keep_early(std::string_view channel, std::span<const std::uint8_t> bytes,
-                  const TooEarly& early);
+  void keep_early(std::string_view channel, const MessageKey& key,
+                  std::span<const std::uint8_t> bytes, const TooEarly& early);
   void judge_again();
   void drop_stale();
   void take_channel(std::string_view channel);
@@ -215,7 +228,7 @@ class Bus {
   bool judging_again_ = false;
   bool more_to_judge_ = false;
   std::optional<EarlyMessages::Clock::time_point> early_since_;  // of the one judged again
-  std::pair<MessageKey, EarlyMessages::Clock::time_point> asked_early_;
+  AskedEarly asked_early_;
   DropLines drop_lines_;
 };
 
@@ -234,7 +247,7 @@ void Bus::deliver(std::span<const std::uint8_t> bytes,
   try {
     handler(*decoded.message);
   } catch (const TooEarly& early) {
-    return keep_early(channel, bytes, early);
+    return keep_early(channel, key, bytes, early);
   } catch (const NotNow&) {
     return;
   } catch (const RejectedMessage& rejected) {

@@ -8,7 +8,8 @@ namespace nextview {
 
 bool EarlyMessages::keep(Message message) {
   const auto same = [&message](const Message& other) {
-    return other.channel == message.channel && other.bytes == message.bytes;
+    return other.key == message.key && other.channel == message.channel &&
+           other.bytes == message.bytes;
   };
   if (std::ranges::any_of(messages_, same)) return true;
   if (messages_.size() >= kMost || bytes_ + message.bytes.size() > kMostBytes) return false;

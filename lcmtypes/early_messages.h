@@ -8,10 +8,12 @@
 #include <string_view>
 #include <vector>
 
+#include "lcmtypes/channels.h"
+
 namespace nextview {
 
-/// Messages that cannot be judged yet, as what led to them has not been heard: kept a while, up to
-/// a bound, until it has.
+/// Messages for which it is too early, as what led to them has not been heard: kept a while, up to
+/// a bound, until it has; or only their keys, when they are to be asked for anew then.
 class EarlyMessages {
  public:
   using Clock = std::chrono::steady_clock;
@@ -22,9 +24,10 @@ class EarlyMessages {
 
   struct Message {
     std::string channel;
-    std::vector<std::uint8_t> bytes;
-    std::string waits_for;  ///< the channel of what led to it
-    std::string reason;     ///< in words
+    MessageKey key;
+    std::vector<std::uint8_t> bytes;  ///< none: to be asked for anew
+    std::string waits_for;            ///< the channel of what led to it
+    std::string reason;               ///< in words
     Clock::time_point since;
   };
 

@@ -27,6 +27,10 @@ void HeardMessages::take(std::string_view channel, const MessageKey& key,
   if (key.view >= taken.from_view) taken.hashes.insert_or_assign(key, hash_of(bytes));
 }
 
+void HeardMessages::forget(std::string_view channel, const MessageKey& key) {
+  by_channel_[std::string(channel)].hashes.erase(key);
+}
+
 void HeardMessages::ignore_before(std::string_view channel, int view) {
   Taken& taken = by_channel_[std::string(channel)];
   taken.from_view = std::max(taken.from_view, view);

@@ -21,6 +21,7 @@ class HeardMessages {
   Verdict judge(std::string_view channel, const MessageKey& key,
                 std::span<const std::uint8_t> bytes) const;
   void take(std::string_view channel, const MessageKey& key, std::span<const std::uint8_t> bytes);
+  void forget(std::string_view channel, const MessageKey& key);
   /// From now on messages of the views before this one are all repeated, and nothing is remembered
   /// of them.
   void ignore_before(std::string_view channel, int view);
