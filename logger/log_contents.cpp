@@ -167,6 +167,11 @@ void LogContents::check_numbers(LogFaults& faults) const {
   for (std::size_t i = 0; i < numbers_.size(); ++i) {
     const std::uint64_t number = numbers_[i];
     if (number == 0 && early.empty()) {
+      if (i > 0) {
+        faults.remarks.push_back("event " + std::to_string(i) +
+                                 " of the log is numbered 0 again: another recorder's, the next "
+                                 "file's, or there twice");
+      }
       expected = 1;
       continue;
     }

@@ -63,9 +63,6 @@ std::vector<UncheckedFields> unchecked_fields(const RunRecord& run, bool planner
         "planner.stop_new_area_m2",  "planner.max_views",     "planner.path_cost_per_m",
         "planner.later_departure_m", "planner.least_overlap", "planner.least_gain_m2",
         "planner.return_home"}},
-      {"the size of the map's window is free as long as it holds what was seen",
-       kConfig,
-       {"map.window_min", "map.window_size"}},
   };
   for_each_channel([&]<class Message>() {
     if constexpr (!is_among<Message>(LookedAt{})) {
