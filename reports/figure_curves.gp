@@ -4,13 +4,13 @@
 eval terminal_options
 set output out
 columns = (data_off ne "") + (data_on ne "")
-set multiplot layout 4,columns columnsfirst title heading font ",14" margins 0.09,0.975,0.055,0.925 spacing 0.09,0.055
+set multiplot layout 4,columns columnsfirst title heading font ",14" noenhanced margins (columns == 1 ? 0.14 : 0.09),0.975,0.055,0.925 spacing 0.09,0.055
 set style fill solid 0.25 noborder
 set grid ytics lc rgb "#e0e0e0"
 set border 3 lc rgb "#606060"
 set tics nomirror out scale 0.5
 set key top right samplen 2 spacing 1 font ",9"
-array name[4] = ["positions tried", "fitness of the view chosen", "mean quality of Occupied voxels", "Occupied area, m^2"]
+array name[4] = ["positions tried", "fitness of the view chosen", "mean quality", "Occupied area, m^2"]
 array low[4] = [0, 0, 0.6, 0]
 array high[4] = [positions_most, 2, 1, area_most]
 do for [column in "off on"] {

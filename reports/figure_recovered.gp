@@ -2,7 +2,7 @@
 # heading, terminal_options, out.
 eval terminal_options
 set output out
-set multiplot layout rows,columns title heading font ",14" margins 0.01,0.99,0.01,0.88 spacing 0.01,0.05
+set multiplot layout rows,columns title heading font (count == 1 ? ",11" : ",14") noenhanced margins 0.01,0.99,0.01,0.88 spacing 0.01,0.05
 set size ratio -1
 unset border
 unset tics

@@ -2,7 +2,7 @@
 # the one gone to, box (the workspace's edges), heading, terminal_options, out.
 eval terminal_options
 set output out
-set multiplot layout 1,2 title heading font ",14"
+set multiplot layout 1,2 title heading font ",14" noenhanced
 set view equal xyz
 set view 62,28,1.48
 set xyplane relative 0
