@@ -1,8 +1,15 @@
 #include "runner/bound_command.h"
 
 #include <filesystem>
+#include <set>
 
 namespace nextview {
+namespace {
+
+/// Options of what a run leaves and shows, which the bounds have nothing to do with.
+const std::set<std::string> kOfTheRunAlone = {"--view", "--paused", "--real-time", "--verbose"};
+
+}  // namespace
 
 std::string bound_command_for(int argc, char** argv) {
   const auto quoted = [](const std::string& argument) {
@@ -24,6 +31,7 @@ std::string bound_command_for(int argc, char** argv) {
     const std::string argument = argv[i];
     if (argument == "--out") ++i;
     if (argument == "--out" || argument.starts_with("--out=")) continue;
+    if (kOfTheRunAlone.contains(argument.substr(0, argument.find('=')))) continue;
     command += ' ';
     command += quoted(argument);
   }

@@ -16,7 +16,6 @@
 #include "base_sim/base.h"
 #include "lcmtypes/ask_timer.h"
 #include "logger/event_numbers.h"
-#include "mapper/mapper_config.h"
 #include "runner/disk_room.h"
 #include "runner/give_way.h"
 #include "runner/log_completion.h"
@@ -24,7 +23,6 @@
 #include "runner/waited_for.h"
 #include "scoring/kept_file.h"
 #include "sensor/part_size.h"
-#include "sensor/sensor_config.h"
 
 namespace nextview {
 namespace {
@@ -99,7 +97,8 @@ RunSupervisor::RunSupervisor(const RunOptions& options, RunSetup setup, RunFolde
       files_(folder_.path()),
       earlier_(std::move(earlier)),
       progress_(progress),
-      rows_(setup_.config) {
+      rows_(setup_.config),
+      scoring_(setup_, cache_folder(options.cache), !options.no_coverage) {
   if (!earlier_) setup_.config.run = new_run_number();
 }
 
@@ -111,7 +110,7 @@ FinishedRun RunSupervisor::carry_out(Clock::time_point program_start) {
   try {
     if (earlier_) take_up_again();
     if (earlier_ && earlier_->is_whole()) {
-      if (setup_.scene) start_scoring();  // only its tables are missing
+      scoring_.start();  // only its tables are missing
     } else {
       start_up();
       watch();
@@ -199,7 +198,7 @@ void RunSupervisor::start_up() {
   heard_.record.add(setup_.config);
   bus_->publish(setup_.config);
   heard_.last_progress = Clock::now();
-  if (setup_.scene) start_scoring();
+  scoring_.start();
   // Each says so when it has loaded what it needs; only then is there somebody to hear a goal. With
   // its configuration in the log a run can be taken up again, whatever becomes of this process.
   AskTimer config_again = reminder_after(milliseconds(20));
@@ -240,21 +239,6 @@ bool RunSupervisor::config_recorded(AskTimer& reminder) {
   if (log_->record().config()) return true;
   if (reminder.due()) bus_->publish(setup_.config);
   return false;
-}
-
-void RunSupervisor::start_scoring() {
-  near_surface_.emplace([scene = setup_.scene, config = setup_.config](const std::stop_token& stop,
-                                                                       VisibilityProgress*) {
-    return NearSurface(scene->mesh(), grid_of(config), window_of(config), stop);
-  });
-  if (options_.no_coverage) return;
-  scoring_.emplace(
-      [scene = setup_.scene, config = setup_.config, cache = cache_folder(options_.cache)](
-          const std::stop_token& stop, VisibilityProgress* progress) {
-        return kept_visible_surface(cache, *scene, std::string(config.scene_digest),
-                                    start_pose_of(config).position_m, visibility_of(config), stop,
-                                    progress);
-      });
 }
 
 void RunSupervisor::watch() {
@@ -300,18 +284,7 @@ bool RunSupervisor::ask_for_missed() {
 }
 
 void RunSupervisor::make_rows(milliseconds wait_for_scoring) {
-  if (near_surface_) {
-    if (auto near = near_surface_->take(wait_for_scoring)) {
-      rows_.set_near(std::move(*near));
-      near_known_ = true;
-    }
-  }
-  if (scoring_) {
-    if (auto visible = scoring_->take(wait_for_scoring)) {
-      visible_ = std::move(*visible);
-      rows_.set_visible(*visible_);
-    }
-  }
+  scoring_.give_to(rows_, wait_for_scoring);
   while (const ViewRow* row = rows_.advance(heard_.record)) progress_.show(*row);
 }
 
@@ -421,34 +394,16 @@ void RunSupervisor::end_processes(FinishedRun& run) {
 }
 
 void RunSupervisor::wait_for_scoring() {
-  const auto pending = [](const auto& work) { return work && work->pending(); };
   AskTimer patience = reminder_after(milliseconds(1000));
-  while ((pending(near_surface_) || pending(scoring_)) && noted_signal() == 0 && !ended_early_) {
+  while (scoring_.pending() && noted_signal() == 0 && !ended_early_) {
     make_rows(milliseconds(50));
-    if (pending(scoring_) && patience.due()) {
+    if (scoring_.coverage_pending() && patience.due()) {
       progress_.say(fmt::format(
           "working out how much of the scene can be seen at all, for the coverage: {} %",
-          scoring_->percent()));
+          scoring_.percent()));
     }
   }
-  if (near_surface_) near_surface_->request_stop();
-  if (scoring_) scoring_->request_stop();
-}
-
-std::string RunSupervisor::why_coverage_is_unknown() const {
-  if (visible_) return {};
-  if (!setup_.scene) return "there is no CAD model to hold the map against";
-  if (options_.no_coverage) return "--no-coverage was given";
-  if (scoring_ && !scoring_->failure().empty()) return scoring_->failure();
-  return "the run ended before it was worked out";
-}
-
-std::string RunSupervisor::why_precision_is_unknown() const {
-  if (!setup_.scene) return "there is no CAD model to hold the map against";
-  if (near_surface_ && !near_surface_->failure().empty()) return near_surface_->failure();
-  if (!near_known_) return "the run ended before it was worked out";
-  const auto& rows = rows_.rows();
-  return rows.empty() || !rows.back().surface_precision ? "nothing is Occupied" : std::string();
+  scoring_.request_stop();
 }
 
 void RunSupervisor::add_bounds(FinishedRun& run) const {
@@ -469,9 +424,9 @@ FinishedRun RunSupervisor::finish(Clock::time_point program_start) {
   run.config = setup_.config;
   run.rows = rows_.rows();
   run.map_memory_bytes = rows_.map_memory_bytes();
-  run.visible = visible_;
-  run.coverage_unknown = why_coverage_is_unknown();
-  run.precision_unknown = why_precision_is_unknown();
+  run.visible = scoring_.visible();
+  run.coverage_unknown = scoring_.why_coverage_is_unknown();
+  run.precision_unknown = scoring_.why_precision_is_unknown(run.rows);
   add_bounds(run);
   run.statuses = heard_.statuses;
   run.lcm_url = lcm_url_;
@@ -480,6 +435,12 @@ FinishedRun RunSupervisor::finish(Clock::time_point program_start) {
   if (ended_early_) {
     run.stop_reason = to_string(ended_early_->reason);
     run.stop_detail = ended_early_->detail;
+    const std::optional<stop_t>& stop = record.stop();
+    if (stop && stop->stop_reason != run.stop_reason) {
+      // The log may say so, and is not to be contradicted without a word.
+      run.stop_detail +=
+          fmt::format(" (the planner had ended the run by then: {})", stop->stop_reason);
+    }
   } else {
     take_end(*record.stop(), run);
   }

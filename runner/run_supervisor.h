@@ -11,7 +11,6 @@
 #include "logger/run_log.h"
 #include "reports/progress.h"
 #include "reports/run_report.h"
-#include "runner/background_scoring.h"
 #include "runner/earlier_run.h"
 #include "runner/heard_run.h"
 #include "runner/log_keeping.h"
@@ -20,9 +19,9 @@
 #include "runner/restart_limit.h"
 #include "runner/run_folder.h"
 #include "runner/run_processes.h"
+#include "runner/run_scoring.h"
 #include "runner/run_setup.h"
 #include "runner/viewer_process.h"
-#include "scoring/near_surface.h"
 
 namespace nextview {
 
@@ -57,7 +56,6 @@ class RunSupervisor {
   void start_viewer();
   bool recording();
   bool config_recorded(AskTimer& reminder);
-  void start_scoring();
   void watch();
   bool take_all_there_is();
   bool ask_for_missed();
@@ -68,8 +66,6 @@ class RunSupervisor {
   FinishedRun finish(Clock::time_point program_start);
   void end_processes(FinishedRun& run);
   void put_log_in_order();
-  std::string why_coverage_is_unknown() const;
-  std::string why_precision_is_unknown() const;
   void add_bounds(FinishedRun& run) const;
 
   template <class Condition>
@@ -107,11 +103,7 @@ class RunSupervisor {
   bool recorder_began_anew_ = false;
   std::set<MissingMessage> missed_;  ///< when last looked
   std::optional<EndsEarly> ended_early_;
-
-  std::optional<BackgroundScoring<NearSurface>> near_surface_;
-  std::optional<BackgroundScoring<VisibleSurface>> scoring_;
-  bool near_known_ = false;
-  std::optional<VisibleSurface> visible_;
+  RunScoring scoring_;
 };
 
 }  // namespace nextview

@@ -320,6 +320,9 @@ TEST(BoundCommand, IsWhatHasBeenTypedWithoutTheFolder) {
             "/b/nextview_bound boxes --seed 2");
   EXPECT_EQ(command_of({"nextview_run", "--out=/tmp/x", "my flat.obj", "--start", "1", "-2", "1"}),
             "nextview_bound 'my flat.obj' --start 1 -2 1");
+  EXPECT_EQ(
+      command_of({"nextview_run", "boxes", "--view", "--paused", "--real-time=8", "--seed=2"}),
+      "nextview_bound boxes --seed=2");
   EXPECT_EQ(command_of({"nextview_run", "it's.obj"}), "nextview_bound 'it'\\''s.obj'");
 }
 

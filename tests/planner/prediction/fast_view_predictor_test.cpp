@@ -104,17 +104,16 @@ TEST(FastViewPredictor, AgreesWithThePlainOneOverAMillionRays) {
 }
 
 TEST(FastViewPredictor, AgreesOnEveryInstructionSetOfThisProcessor) {
-  int targets = 0;
-  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets()) {
+  const std::vector<std::int64_t> targets = hwy::SupportedAndGeneratedTargets();
+  ASSERT_FALSE(targets.empty());
+  for (const std::int64_t target : targets) {
     hwy::SetSupportedTargetsForTest(target);
     hwy::GetChosenTarget().Update(hwy::SupportedTargets());
     SCOPED_TRACE(ray_kernel_target());
     EXPECT_GE(compare(2, 10, 4, 1), 200'000);
-    ++targets;
   }
   hwy::SetSupportedTargetsForTest(0);
   hwy::GetChosenTarget().Update(hwy::SupportedTargets());
-  EXPECT_GE(targets, 1);
 }
 
 TEST(FastViewPredictor, AgreesWhateverTheNumberOfThreads) {
