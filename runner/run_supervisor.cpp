@@ -26,7 +26,6 @@
 #include "runner/waited_for.h"
 #include "scoring/kept_file.h"
 #include "sensor/part_size.h"
-#include "sensor/sensor_config.h"
 
 namespace nextview {
 namespace {
