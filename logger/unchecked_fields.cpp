@@ -76,21 +76,19 @@ std::vector<UncheckedFields> unchecked_fields(const RunRecord& run, bool planner
   }
   const Simulated simulated = simulated_in(run);
   if (!simulated.base) {
-    unchecked.push_back({"what a robot of one's own says is believed",
-                         kArrival,
-                         {"true_position_m", "true_pan_rad", "true_tilt_rad", "path_length_m"}});
+    unchecked.push_back(
+        {"what a robot of one's own says is believed",
+         kArrival,
+         {"utime", "true_position_m", "true_pan_rad", "true_tilt_rad", "path_length_m"}});
     unchecked.push_back(
         {"where a robot of one's own has refused to go on is believed", kArrival, kBelievedPose});
   }
   if (!simulated.sensor) {
-    unchecked.push_back({"what a sensor of one's own says of itself is believed",
-                         kConfig,
-                         {"sensor.geometry_parameter", "sensor.range_min_m", "sensor.range_max_m",
-                          "sensor.scan_duration_s"}});
-    unchecked.push_back({planner ? "shows only where a decision depends on it"
-                                 : "what a sensor of one's own says of itself is believed",
-                         kConfig,
-                         {"sensor.geometry", "sensor.columns", "sensor.rows"}});
+    unchecked.push_back(
+        {"what a sensor of one's own says of itself is believed",
+         kConfig,
+         {"sensor.geometry", "sensor.columns", "sensor.rows", "sensor.geometry_parameter",
+          "sensor.range_min_m", "sensor.range_max_m", "sensor.scan_duration_s"}});
     unchecked.push_back(
         {"held against a range image of one's own to a millionth only", kArrival, kBelievedPose});
   } else {

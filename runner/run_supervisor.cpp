@@ -16,7 +16,6 @@
 
 #include "base_sim/base.h"
 #include "lcmtypes/ask_timer.h"
-#include "lcmtypes/part_size.h"
 #include "logger/event_numbers.h"
 #include "logger/seal_log.h"
 #include "runner/disk_room.h"
@@ -26,6 +25,7 @@
 #include "runner/run_signals.h"
 #include "runner/waited_for.h"
 #include "scoring/kept_file.h"
+#include "sensor/part_size.h"
 
 namespace nextview {
 namespace {

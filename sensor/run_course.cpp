@@ -1,4 +1,4 @@
-#include "lcmtypes/run_course.h"
+#include "sensor/run_course.h"
 
 #include <fmt/format.h>
 
