@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -21,7 +20,6 @@
 #include "runner/disk_room.h"
 #include "runner/give_way.h"
 #include "runner/log_completion.h"
-#include "runner/private_network.h"
 #include "runner/run_signals.h"
 #include "runner/waited_for.h"
 #include "scoring/kept_file.h"
@@ -116,11 +114,9 @@ FinishedRun RunSupervisor::carry_out(Clock::time_point program_start) {
       scoring_.start();  // only its tables are missing
     } else {
       start_up();
-      do {
-        watch();
-        complete_log();
-        collect_statuses();
-      } while (!heard_.record.stop());  // a planner that says how it is, and has gone on
+      watch();
+      complete_log();
+      collect_statuses();
     }
   } catch (const EndsEarly& end) {
     end_early(end);
@@ -184,10 +180,6 @@ void RunSupervisor::start_up() {
                      options);
   if (options_.verbose || !options_.without.empty()) {
     progress_.say(fmt::format("bus: {}, run {}", lcm_url_, setup_.config.run));
-  }
-  if (options_.own_network) {
-    progress_.say(fmt::format("in a network of its own; to join it: {} COMMAND, such as ./spy '{}'",
-                              command_to_join_network_of(::getpid()), lcm_url_));
   }
 
   for (const std::string& role : options_.elsewhere) {
@@ -306,12 +298,7 @@ void RunSupervisor::complete_log() {
   std::int64_t read = 0;
   for (;;) {
     log_->read_on();
-    const auto& stop = heard_.record.stop();
-    if (!stop) return;  // it was none
-    // What a stranger has said of views there are not need not be made whole.
-    std::vector<MissingMessage> missing = log_->record().missing();
-    std::erase_if(
-        missing, [&stop](const MissingMessage& message) { return message.view > stop->views + 1; });
+    const std::vector<MissingMessage> missing = log_->record().missing();
     if (missing.empty()) return;
     // What is asked for is recorded too: the log grows, and is none the better for it.
     if (missing != had_missing) heard_.last_progress = Clock::now();
@@ -352,7 +339,6 @@ void RunSupervisor::collect_statuses() {
 }
 
 void RunSupervisor::end_early(const EndsEarly& end) {
-  heard_.ending = true;
   ended_early_ = end;
   if (!processes_ || !bus_) return;
   processes_->end_planner();
@@ -362,7 +348,7 @@ void RunSupervisor::end_early(const EndsEarly& end) {
     read_log_to_its_end(*log_, *bus_, heard_);
     make_rows();
     stop_t own{};
-    own.views = std::min(log_->record().views_taken(), record.latest_view());
+    own.views = log_->record().views_taken();
     own.stop_reason = std::string(to_string(end.reason));
     own.detail = end.detail;
     const std::optional<stop_t>& recorded = log_->record().stop();
