@@ -136,6 +136,7 @@ void RunLog::take_as(const LoggedMessage& message) {
       if constexpr (Channel<Message>::answered) note_begin(key_of(*decoded.message).view);
     } catch (const RejectedMessage& rejected) {
       const MessageKey key = key_of(*decoded.message);
+      seen_.erase({message.channel, key});  // the true one may still come
       dropped_.push_back(describe(MissingMessage{Channel<Message>::name, key.view, key.attempt}) +
                          " does not fit the rest: " + rejected.what());
     }

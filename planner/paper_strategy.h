@@ -60,7 +60,8 @@ class PaperStrategy : public Strategy {
                                         .directions = 20,
                                         .ends_by_least_gain = false,
                                         .ends_by_stop_rule = true,
-                                        .weighs_factors = true};
+                                        .weighs_factors = true,
+                                        .departs_alike = true};
   static std::unique_ptr<Strategy> make(const StrategyInputs& inputs);
 
   /// @param voxel_size_m of the map, for areas

@@ -36,9 +36,10 @@ namespace {
 /// its 20 directions, or after computed views, what is hidden is looked into from ever nearer to
 /// it.
 double later_departure_of_simplex_m(const run_config_t& config) {
-  const bool to_the_letter = config.strategy == PaperStrategy::kFacts.name &&
-                             config.planner.directions == PaperStrategy::kFacts.directions;
-  return to_the_letter ? config.planner.departure_m : config.planner.later_departure_m;
+  const StrategyFacts* strategy = find_strategy(config.strategy);
+  const bool alike = strategy != nullptr && strategy->departs_alike &&
+                     config.planner.directions == strategy->directions;
+  return alike ? config.planner.departure_m : config.planner.later_departure_m;
 }
 
 PlannerParameters planner_parameters_of(const run_config_t& config) {

@@ -24,6 +24,9 @@ struct StrategyFacts {
   /// Its objective is the paper's fitness with planner_config_t's structure_weight and
   /// navigation_weight (P18).
   bool weighs_factors = false;
+  /// With as many directions as its own, every move departs as the first one does, by
+  /// planner_config_t's departure_m; otherwise by later_departure_m from the second on.
+  bool departs_alike = false;
 };
 
 /// Of all strategies, in the order of planner/strategy_list.h.

@@ -15,6 +15,7 @@
 
 #include "base_sim/base.h"
 #include "lcmtypes/ask_timer.h"
+#include "lcmtypes/part_size.h"
 #include "logger/event_numbers.h"
 #include "logger/seal_log.h"
 #include "runner/disk_room.h"
@@ -23,7 +24,6 @@
 #include "runner/run_signals.h"
 #include "runner/waited_for.h"
 #include "scoring/kept_file.h"
-#include "sensor/part_size.h"
 
 namespace nextview {
 namespace {

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "lcmtypes/bus.h"
+#include "lcmtypes/standard_output.h"
 #include "lcmtypes/tell_version.h"
 #include "recorded_files.h"
 #include "sensor/range_image_message.h"
@@ -89,6 +90,7 @@ class FileDriver {
 }  // namespace
 
 int main(int argc, char** argv) {
+  nextview::answer_for_standard_output();
   if (tell_version(argc, argv)) return 0;
   if (argc != 4) {
     std::fprintf(stderr, "usage: file_driver LCM_URL RUN FOLDER\n");

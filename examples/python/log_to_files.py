@@ -6,8 +6,10 @@ see what such files hold (docs/own-sensor.md).
 """
 
 import argparse
+import json
 import math
 import pathlib
+import shlex
 import struct
 import sys
 
@@ -77,15 +79,29 @@ def write_scans(folder, parts):
     write_lines(folder / "rays.csv", ["sin", "cos"], next(iter(rays.values())))
 
 
-def command(config, views):
+def write_sensor(file, sensor):
+    """As `./run --sensor` reads it."""
+    name, angles = (("tilted_line_scan", ["horizontal_aperture_deg", "vertical_aperture_deg"]),
+                    ("spherical", ["horizontal_aperture_deg", "vertical_aperture_deg"]),
+                    ("line_striper", ["sweep_deg", "vertical_aperture_deg"]))[sensor.geometry]
+    values = {"geometry": name, "columns": sensor.columns, "rows": sensor.rows,
+              **{key: math.degrees(angle) for key, angle in zip(angles, sensor.geometry_parameter)}}
+    if name == "line_striper":
+        values["baseline_m"] = sensor.geometry_parameter[2]
+    values.update((key, getattr(sensor, key))
+                  for key in ("range_min_m", "range_max_m", "range_noise_m", "scan_duration_s"))
+    file.write_text(json.dumps(values, indent=2) + "\n", encoding="utf-8")
+
+
+def command(config, views, sensor_file):
     """What starts such a run without simulators; angles in degrees, as typed."""
     base = config.base
-    words = ["./run", "--without", "sensor_sim,base_sim", "--start", *base.start_m,
+    words = ["./run", "--without", "sensor_sim,base_sim", "--sensor", sensor_file, "--start", *base.start_m,
              "--workspace", *base.workspace_min_m, *base.workspace_max_m,
              "--start-pan", math.degrees(base.start_pan_rad), "--start-tilt", math.degrees(base.start_tilt_rad),
              "--voxel-size", config.map.voxel_size_m, "--strategy", config.strategy, "--seed", config.seed,
              "--views", views]
-    return " ".join(map(str, words))
+    return shlex.join(map(str, words))
 
 
 def main():
@@ -101,7 +117,10 @@ def main():
     options.folder.mkdir(parents=True, exist_ok=True)
     write_arrivals(options.folder, messages(options.log, nextview.arrival_t))
     write_scans(options.folder, parts)
-    print(command(messages(options.log, nextview.run_config_t)[0], parts[-1].view))
+    config = messages(options.log, nextview.run_config_t)[0]
+    sensor_file = options.folder / "sensor.json"
+    write_sensor(sensor_file, config.sensor)
+    print(command(config, parts[-1].view, sensor_file))
 
 
 if __name__ == "__main__":

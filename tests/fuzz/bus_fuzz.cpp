@@ -67,7 +67,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   Bus bus(std::make_unique<FedTransport>(receivers), kRun, "mapper");
   RunRecord record(RangeImages::Keep);
   for_each_channel([&]<class Message>() {
-    if constexpr (!std::is_same_v<Message, request_t>) {
+    // What the bus itself takes in.
+    constexpr bool bus_s_own = std::is_same_v<Message, request_t> ||
+                               std::is_same_v<Message, parts_request_t> ||
+                               std::is_same_v<Message, recorded_t>;
+    if constexpr (!bus_s_own) {
       bus.on<Message>([&](const Message& message) {
         if constexpr (requires { record.add(message); }) record.add(message);
       });

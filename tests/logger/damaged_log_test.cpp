@@ -127,7 +127,7 @@ TEST_F(DamagedLog, AnEventWithoutAChannelIsReadAsOne) {
 TEST_F(DamagedLog, ALengthThatIsWrongAllocatesNothing) {
   constexpr std::size_t kMuch = 1024 * 1024;
   for (const std::size_t length_at : {std::size_t{20}, std::size_t{24}}) {
-    for (const std::uint8_t high : {0x7F, 0x80, 0xFF, 0x10}) {
+    for (const std::uint8_t high : std::vector<std::uint8_t>{0x7F, 0x80, 0xFF, 0x10}) {
       Bytes log = log_;
       log[starts_[2] + length_at] = high;
       write(log);
@@ -146,7 +146,8 @@ TEST_F(DamagedLog, ThatIsNothingButDamageIsReadToItsEnd) {
   EXPECT_EQ(bytes_left_, 10000);
   Bytes sync_words;
   for (int i = 0; i < 5000; ++i) {
-    for (const std::uint8_t byte : {0xED, 0xA1, 0xDA, 0x01}) sync_words.push_back(byte);
+    for (const std::uint8_t byte : std::vector<std::uint8_t>{0xED, 0xA1, 0xDA, 0x01})
+      sync_words.push_back(byte);
   }
   EXPECT_EQ(numbers(sync_words), Numbers{});
 }

@@ -85,6 +85,8 @@ Recording record_run() {
   pace_t pace = example<pace_t>();
   pace.last_view = config.planner.max_views + 1;  // as far as the run goes
   run_bus.publish(pace);
+  mapper_bus.publish(example<parts_request_t>());
+  run_bus.publish(example<recorded_t>());
   const auto turn = [&] {
     bool worked = planner.step();
     worked |= sensor.step();

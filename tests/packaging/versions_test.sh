@@ -18,7 +18,7 @@ version=${version#nextview }
 # What is part of the tests only.
 is_of_tests() {
   case "$1" in
-    *_test | vector_clones_* | noise_* | driver | forgetful_recorder) true ;;
+    *_test | fuzz_cases_* | vector_clones_* | noise_* | driver | forgetful_recorder) true ;;
     *) false ;;
   esac
 }

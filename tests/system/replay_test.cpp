@@ -198,7 +198,7 @@ TEST_F(RecordedRun, AMessageThatCannotBeRightIsLeftOut) {
   });
   ASSERT_TRUE(broken);
   const Outcome replay = replay_folder(folder);
-  expect_lack(replay, "the log lacks NEXTVIEW_COMMIT of view 2");
+  expect_disagreement(replay, "the log lacks NEXTVIEW_COMMIT of view 2");
   EXPECT_NE(replay.output.find("left out: a message on NEXTVIEW_COMMIT cannot be right"),
             std::string::npos)
       << replay.output;
