@@ -6,11 +6,13 @@
 #include <string_view>
 
 #include "bench/bench_groups.h"
+#include "lcmtypes/standard_output.h"
 #include "lcmtypes/tell_version.h"
 
 // nextview_bench [--quick] [--group=NAME] and all options of Google Benchmark.
 int main(int argc, char** argv) {
   using namespace nextview;
+  answer_for_standard_output();
   if (tell_version(argc, argv)) return 0;
   const std::map<std::string, void (*)(const BenchOptions&)> groups = {
       {"view_evaluation", register_view_evaluation},

@@ -15,6 +15,7 @@
 #include "base_sim/base.h"
 #include "bench/hospital.h"
 #include "bench/recovered_room.h"
+#include "lcmtypes/standard_output.h"
 #include "lcmtypes/tell_version.h"
 #include "scene/mesh_file.h"
 #include "scoring/visible_surface.h"
@@ -81,6 +82,7 @@ void measure(const std::string& name, double share) {
 }  // namespace nextview
 
 int main(int argc, char** argv) {
+  nextview::answer_for_standard_output();
   if (nextview::tell_version(argc, argv)) return 0;
   if (argc < 2 || argc > 3) {
     std::cerr << "usage: nextview_bench_coverage SCENE [SHARE]\n";

@@ -20,6 +20,7 @@
 #include "base_sim/base.h"
 #include "base_sim/base_sim_process.h"
 #include "bench/stopwatch.h"
+#include "lcmtypes/standard_output.h"
 #include "lcmtypes/tell_version.h"
 #include "planner/planner_config.h"
 #include "reports/median.h"
@@ -230,6 +231,7 @@ int figures(int argc, char** argv) {
 }  // namespace nextview
 
 int main(int argc, char** argv) {
+  nextview::answer_for_standard_output();
   if (nextview::tell_version(argc, argv)) return 0;
   try {
     return nextview::figures(argc, argv);

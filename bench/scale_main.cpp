@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "bench/exploration.h"
+#include "lcmtypes/standard_output.h"
 #include "lcmtypes/tell_version.h"
 #include "planner/prediction/fast_view_predictor.h"
 #include "planner/prediction/free_space_field.h"
@@ -102,6 +103,7 @@ int explore(const std::string& name, double voxel_size_m, int views) {
 }  // namespace nextview
 
 int main(int argc, char** argv) {
+  nextview::answer_for_standard_output();
   if (nextview::tell_version(argc, argv)) return 0;
   if (argc != 4) {
     std::cerr << "usage: nextview_bench_scale SCENE VOXEL_SIZE_M VIEWS\n";

@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "lcmtypes/program_version.h"
+#include "lcmtypes/standard_output.h"
 #include "reports/median.h"
 
 namespace {
@@ -253,6 +254,7 @@ void print(const Json& json) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  nextview::answer_for_standard_output();
   CLI::App app("Prints what nextview_bench has measured.");
   std::vector<std::string> files;
   std::string merged;

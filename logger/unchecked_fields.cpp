@@ -76,12 +76,14 @@ std::vector<UncheckedFields> unchecked_fields(const RunRecord& run, bool planner
   }
   const Simulated simulated = simulated_in(run);
   if (!simulated.base) {
-    unchecked.push_back(
-        {"what a robot of one's own says is believed",
-         kArrival,
-         {"utime", "true_position_m", "true_pan_rad", "true_tilt_rad", "path_length_m"}});
+    unchecked.push_back({"what a robot of one's own says is believed",
+                         kArrival,
+                         {"true_position_m", "true_pan_rad", "true_tilt_rad", "path_length_m"}});
     unchecked.push_back(
         {"where a robot of one's own has refused to go on is believed", kArrival, kBelievedPose});
+  }
+  if (!simulated.base && !simulated.sensor) {
+    unchecked.push_back({"what a robot of one's own says is believed", kArrival, {"utime"}});
   }
   if (!simulated.sensor) {
     unchecked.push_back({"what a sensor of one's own says of itself is believed",
