@@ -4,6 +4,8 @@
 #include <iostream>
 #include <iterator>
 
+#include "lcmtypes/program_version.h"
+#include "lcmtypes/standard_output.h"
 #include "tests/logger/log_mutations.h"
 
 namespace {
@@ -56,10 +58,13 @@ int mutate(const LogBytes& log, std::uint64_t seed, bool planner) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  nextview::answer_for_standard_output();
   CLI::App app{
       "Changes one thing in the log of a run, a thousand times by chance, and counts what a "
       "replay\n"
       "makes of it. Exit status 1 when one passes unnoticed.\n"};
+  app.set_version_flag("--version",
+                       "nextview_mutations " + std::string(nextview::program_version()));
   std::string file;
   std::uint64_t seed = 1;
   bool planner = false;
