@@ -50,6 +50,16 @@ bool publish_again(Bus& bus, const MissingMessage& missing, const RunRecord& hea
   return missing.channel == Channel<commit_t>::name && publish(heard.commit(view));
 }
 
+std::optional<stop_t> end_to_publish(const std::optional<stop_t>& recorded,
+                                     const std::optional<stop_t>& heard, const stop_t& own) {
+  if (recorded) return std::nullopt;
+  return heard ? *heard : own;
+}
+
+namespace {
+
+/// Reads what the recorder still writes, and has what it lacks published again; ends when all is
+/// there, or nothing more comes.
 void read_log_to_its_end(RunLog& log, Bus& bus, const HeardRun& heard) {
   // The recorder is behind. Neither it nor the view under way is waited for when it does not get
   // on, nor for ever.
@@ -85,12 +95,7 @@ void read_log_to_its_end(RunLog& log, Bus& bus, const HeardRun& heard) {
   }
 }
 
-std::optional<stop_t> end_to_publish(const std::optional<stop_t>& recorded,
-                                     const std::optional<stop_t>& heard, const stop_t& own) {
-  if (recorded) return std::nullopt;
-  return heard ? *heard : own;
-}
-
+/// Publishes an end of the run until it is in the log, for two seconds at most.
 void publish_into_log(const stop_t& stop, RunLog& log, Bus& bus) {
   bus.publish(stop);
   AskTimer again(milliseconds(20), milliseconds(200));
@@ -99,6 +104,21 @@ void publish_into_log(const stop_t& stop, RunLog& log, Bus& bus) {
     if (again.due()) bus.publish(stop);
     bus.handle(milliseconds(5));
     log.read_on();
+  }
+}
+
+}  // namespace
+
+void log_early_end(const EndsEarly& end, RunLog& log, Bus& bus, HeardRun& heard) {
+  read_log_to_its_end(log, bus, heard);
+  stop_t own{};
+  own.views = log.record().views_taken();
+  own.stop_reason = std::string(to_string(end.reason));
+  own.detail = end.detail;
+  const std::optional<stop_t>& recorded = log.record().stop();
+  if (recorded && !heard.record.stop()) heard.record.add(*recorded);  // it was missed here
+  if (const auto stop = end_to_publish(recorded, heard.record.stop(), own)) {
+    publish_into_log(*stop, log, bus);
   }
 }
 

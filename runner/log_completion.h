@@ -5,6 +5,7 @@
 
 #include "lcmtypes/bus.h"
 #include "logger/run_log.h"
+#include "runner/ends_early.h"
 #include "runner/heard_run.h"
 
 namespace nextview {
@@ -20,10 +21,6 @@ std::set<MissingMessage> lacking_in_log(const RunRecord& logged, const RunRecord
 /// @return false when it is not here, or is a range image, of which only the pixels are kept
 bool publish_again(Bus& bus, const MissingMessage& missing, const RunRecord& heard);
 
-/// Reads what the recorder still writes of a run that ends early, and has what it lacks published
-/// again: the view under way still counts. Ends when all is there, or nothing more comes.
-void read_log_to_its_end(RunLog& log, Bus& bus, const HeardRun& heard);
-
 /// The end that is to be published so that the log of a run that ended early says how it ended.
 /// There is one end only: another one would contradict it.
 /// @param recorded the end in the log, if there is one: then nothing is published
@@ -32,7 +29,10 @@ void read_log_to_its_end(RunLog& log, Bus& bus, const HeardRun& heard);
 std::optional<stop_t> end_to_publish(const std::optional<stop_t>& recorded,
                                      const std::optional<stop_t>& heard, const stop_t& own);
 
-/// Publishes an end of the run until it is in the log, for two seconds at most.
-void publish_into_log(const stop_t& stop, RunLog& log, Bus& bus);
+/// Has the log of a run that ends early say so: reads what the recorder still writes, has what it
+/// lacks published again, since the view under way still counts, and publishes the end until it is
+/// in the log, for two seconds at most.
+/// @param heard takes the end that is in the log, if it was missed here
+void log_early_end(const EndsEarly& end, RunLog& log, Bus& bus, HeardRun& heard);
 
 }  // namespace nextview

@@ -7,20 +7,17 @@
 #include <cmath>
 #include <cstdlib>
 #include <exception>
-#include <numbers>
 #include <random>
 #include <set>
 #include <thread>
 #include <utility>
 
-#include "base_sim/base.h"
 #include "lcmtypes/ask_timer.h"
 #include "lcmtypes/part_size.h"
-#include "logger/event_numbers.h"
-#include "logger/seal_log.h"
-#include "runner/disk_room.h"
+#include "runner/finished_log.h"
 #include "runner/give_way.h"
 #include "runner/log_completion.h"
+#include "runner/run_outcome.h"
 #include "runner/run_signals.h"
 #include "runner/waited_for.h"
 #include "scoring/kept_file.h"
@@ -69,24 +66,6 @@ RoleOptions role_options(const RunOptions& options, const RunSetup& setup, std::
   return by_role;
 }
 
-void count_refusals(const RunRecord& record, FinishedRun& run) {
-  for (const auto& [key, arrival] : record.arrivals()) {
-    if (arrival.arrived) continue;
-    ++(arrival.refusal.starts_with(kCollision) ? run.collisions : run.other_refusals);
-  }
-}
-
-/// As the log says it; a reason that is none of ours gets a sentence of its own.
-void take_end(const stop_t& stop, FinishedRun& run) {
-  run.stop_reason = stop.stop_reason;
-  run.stop_detail = stop.detail;
-  if (stop_reason_from_string(run.stop_reason)) return;
-  run.stop_detail = fmt::format(
-      "The run was ended for the reason \"{}\", which this version of nextview_run does not know: "
-      "start it with the planner it was built with. {}",
-      stop.stop_reason, stop.detail);
-}
-
 }  // namespace
 
 RunSupervisor::RunSupervisor(const RunOptions& options, RunSetup setup, RunFolder folder,
@@ -99,6 +78,7 @@ RunSupervisor::RunSupervisor(const RunOptions& options, RunSetup setup, RunFolde
       earlier_(std::move(earlier)),
       progress_(progress),
       rows_(setup_.config),
+      replacements_(folder_, progress_),
       scoring_(setup_, cache_folder(options.cache), !options.no_coverage) {
   if (!earlier_) setup_.config.run = new_run_number();
 }
@@ -163,7 +143,6 @@ void RunSupervisor::take_up_again() {
     make_rows();  // no range image is kept for longer than it is needed
   });
   reached_ = heard_.record.latest_view();
-  recorder_began_anew_ = true;
   recording();
   logged_before_ = log_->counters().ours;
   progress_.say(fmt::format("goes on after view {}", heard_.record.committed_views()));
@@ -249,7 +228,7 @@ void RunSupervisor::watch() {
   const RunRecord& record = heard_.record;
   while (!record.stop() || !record.missing().empty()) {
     pump(milliseconds(20));
-    log_mending_.step(*log_, *bus_, heard_);
+    replacements_.mend(*log_, *bus_, heard_);
     log_keeping_.step(*log_, *bus_, heard_);
     make_rows();
     if (!reminder.due() || !take_all_there_is()) continue;
@@ -342,20 +321,9 @@ void RunSupervisor::end_early(const EndsEarly& end) {
   ended_early_ = end;
   if (!processes_ || !bus_) return;
   processes_->end_planner();
-  RunRecord& record = heard_.record;
   try {
-    if (!log_ || !record.config()) return;
-    read_log_to_its_end(*log_, *bus_, heard_);
-    make_rows();
-    stop_t own{};
-    own.views = log_->record().views_taken();
-    own.stop_reason = std::string(to_string(end.reason));
-    own.detail = end.detail;
-    const std::optional<stop_t>& recorded = log_->record().stop();
-    if (recorded && !record.stop()) record.add(*recorded);  // it was missed here
-    if (const auto stop = end_to_publish(recorded, record.stop(), own)) {
-      publish_into_log(*stop, *log_, *bus_);
-    }
+    if (!log_ || !heard_.record.config()) return;
+    log_early_end(end, *log_, *bus_, heard_);
     make_rows();
   } catch (const std::exception& error) {
     progress_.say(std::string("the end of the run could not be logged: ") + error.what());
@@ -363,20 +331,10 @@ void RunSupervisor::end_early(const EndsEarly& end) {
 }
 
 void RunSupervisor::put_log_in_order() {
-  // A recorder that was killed just now leaves half a message, and no more than that is cut off.
-  constexpr std::int64_t kLongestEvent = 64 * 1024;
   if (!log_) return;
-  try {
-    log_->read_on();
-    if (log_->bytes_left() <= kLongestEvent) log_->cut_rest();
-    seal_log(*log_);
-    if (!recorder_began_anew_) return;
-    number_events(files_.log);
-    for (const std::string& what : log_->contradictions()) {
-      progress_.say("warning: who was started again says otherwise: " + what);
-    }
-  } catch (const LogError& error) {
-    progress_.say(error.what());
+  const bool began_anew = earlier_ || replacements_.recorder_began_anew();
+  for (const std::string& what : finish_log(*log_, files_.log, began_anew)) {
+    progress_.say(what);
   }
 }
 
@@ -440,18 +398,7 @@ FinishedRun RunSupervisor::finish(Clock::time_point program_start) {
   run.lcm_url = lcm_url_;
   if (log_) run.log = log_->counters();
   count_refusals(record, run);
-  if (ended_early_) {
-    run.stop_reason = to_string(ended_early_->reason);
-    run.stop_detail = ended_early_->detail;
-    const std::optional<stop_t>& stop = record.stop();
-    if (stop && stop->stop_reason != run.stop_reason) {
-      // The log may say so, and is not to be contradicted without a word.
-      run.stop_detail +=
-          fmt::format(" (the planner had ended the run by then: {})", stop->stop_reason);
-    }
-  } else {
-    take_end(*record.stop(), run);
-  }
+  tell_end(record, ended_early_, run);
   if (heard_.first_goal) run.start_up_s = seconds_between(program_start, *heard_.first_goal);
   if (heard_.first_goal && heard_.last_commit) {
     run.first_goal_to_last_commit_s = seconds_between(*heard_.first_goal, *heard_.last_commit);
@@ -468,25 +415,11 @@ void RunSupervisor::pump(milliseconds timeout) {
   }
   if (heard_.paused()) heard_.last_progress = Clock::now();
   if (seconds_between(heard_.last_progress, Clock::now()) >
-      options_.patience_s + watched_motion_s()) {
+      options_.patience_s + watched_motion_s(heard_.record, setup_.config, options_.real_time)) {
     throw EndsEarly{StopReason::NoAnswer,
                     fmt::format("{} for {} s (--patience)", waited_for(heard_, answering_),
                                 std::lround(options_.patience_s))};
   }
-}
-
-double RunSupervisor::watched_motion_s() const {
-  if (options_.real_time <= 0.0) return 0.0;
-  const RunRecord& record = heard_.record;
-  const goal_t* goal =
-      record.goal(record.latest_view(), record.final_attempt(record.latest_view()));
-  if (goal == nullptr) return 0.0;
-  const base_config_t& base = setup_.config.base;
-  constexpr double kWholeTurn = 2.0 * std::numbers::pi;
-  const double motion_s =
-      std::max(goal->path_length_m / std::min(base.base_speed_m_s, base.lift_speed_m_s),
-               kWholeTurn / base.turn_speed_rad_s);
-  return (motion_s + setup_.config.sensor.scan_duration_s) / options_.real_time;
 }
 
 void RunSupervisor::check_on_processes() {
@@ -497,54 +430,11 @@ void RunSupervisor::check_on_processes() {
   if (!processes_) return;
   const std::optional<Casualty> casualty = processes_->casualty();
   for (const std::string& line : processes_->take_lines()) progress_.say(line);
-  if (casualty) stand_in_for(*casualty);
-}
-
-std::optional<std::string> RunSupervisor::why_log_ends_here() {
-  try {
+  if (!casualty) return;
+  replacements_.stand_in_for(*casualty, *processes_, heard_, [this] {
     recording();
-    if (log_) log_->cut_rest();
-  } catch (const LogError& error) {
-    return error.what();
-  }
-  return why_no_more_fits(files_.log);
-}
-
-std::int64_t RunSupervisor::messages_recorded() const {
-  return log_ ? static_cast<std::int64_t>(log_->record().held().size()) : 0;
-}
-
-void RunSupervisor::stand_in_for(const Casualty& casualty) {
-  const std::string& role = casualty.role;
-  const auto dies = [&](const std::string& why) {
-    throw EndsEarly{StopReason::ProcessDied, casualty.account + "\n" + why};
-  };
-  if (role == RunProcesses::kPlanner && processes_->has_own_planner()) {
-    dies("A planner of your own is not started again: it might decide otherwise.");
-  }
-  const bool recorder = role == RunProcesses::kRecorder;
-  if (recorder) {
-    if (const auto why = why_log_ends_here()) {
-      dies(fmt::format("{}: {}. Mend that, and go on with the run by --resume {}",
-                       files_.log.string(), *why, folder_.path().string()));
-    }
-  }
-  const std::int64_t progress = recorder ? messages_recorded() : heard_.record.committed_views();
-  if (!restart_limit_.allows(role, progress)) {
-    dies(fmt::format("It was started again {} times, and did not get on.", RestartLimit::kTries));
-  }
-  progress_.say(casualty.account + "\nIt is started again.");
-  heard_.worked_on.erase(role);
-  heard_.last_progress = Clock::now();
-  try {
-    processes_->restart(role, heard_.record.latest_view());
-  } catch (const SetupError& error) {
-    dies(error.what());
-  }
-  if (recorder) {
-    recorder_began_anew_ = true;
-    log_mending_.begin();
-  }
+    return log_ ? &*log_ : nullptr;
+  });
 }
 
 }  // namespace nextview

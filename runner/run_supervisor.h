@@ -12,11 +12,11 @@
 #include "reports/progress.h"
 #include "reports/run_report.h"
 #include "runner/earlier_run.h"
+#include "runner/ends_early.h"
 #include "runner/heard_run.h"
 #include "runner/log_keeping.h"
-#include "runner/log_mending.h"
 #include "runner/port_lock.h"
-#include "runner/restart_limit.h"
+#include "runner/replacements.h"
 #include "runner/run_folder.h"
 #include "runner/run_processes.h"
 #include "runner/run_scoring.h"
@@ -44,12 +44,6 @@ class RunSupervisor {
   void show_until_closed();
 
  private:
-  /// Thrown when the run cannot go on to its own end.
-  struct EndsEarly {
-    StopReason reason;
-    std::string detail;
-  };
-
   void take_up_again();
   void start_up();
   void join_bus();
@@ -71,12 +65,7 @@ class RunSupervisor {
   template <class Condition>
   void pump_until(const Condition& condition);
   void pump(std::chrono::milliseconds timeout);
-  /// With --real-time: what the motion and scan under way may take without a word.
-  double watched_motion_s() const;
   void check_on_processes();
-  void stand_in_for(const Casualty& casualty);
-  std::optional<std::string> why_log_ends_here();
-  std::int64_t messages_recorded() const;
   void make_rows(std::chrono::milliseconds wait_for_scoring = std::chrono::milliseconds(0));
 
   RunOptions options_;
@@ -95,12 +84,10 @@ class RunSupervisor {
   std::unique_ptr<Bus> bus_;
   std::optional<RunProcesses> processes_;
   std::optional<ViewerProcess> viewer_;
-  RestartLimit restart_limit_;
+  Replacements replacements_;
   std::optional<RunLog> log_;
   std::int64_t logged_before_ = 0;  ///< messages of the run that were in the log at the start
   LogKeeping log_keeping_;
-  LogMending log_mending_;
-  bool recorder_began_anew_ = false;
   std::set<MissingMessage> missed_;  ///< when last looked
   std::optional<EndsEarly> ended_early_;
   RunScoring scoring_;

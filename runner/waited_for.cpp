@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <numbers>
 
 namespace nextview {
 namespace {
@@ -45,6 +46,19 @@ std::string waited_for(const HeardRun& heard, const Roles& answering) {
     return fmt::format("{} sent no range image of view {}", who_is("sensor_sim", answering), view);
   }
   return fmt::format("the mapper did not commit the range image of view {}", view);
+}
+
+double watched_motion_s(const RunRecord& record, const run_config_t& config, double real_time) {
+  if (real_time <= 0.0) return 0.0;
+  const goal_t* goal =
+      record.goal(record.latest_view(), record.final_attempt(record.latest_view()));
+  if (goal == nullptr) return 0.0;
+  const base_config_t& base = config.base;
+  constexpr double kWholeTurn = 2.0 * std::numbers::pi;
+  const double motion_s =
+      std::max(goal->path_length_m / std::min(base.base_speed_m_s, base.lift_speed_m_s),
+               kWholeTurn / base.turn_speed_rad_s);
+  return (motion_s + config.sensor.scan_duration_s) / real_time;
 }
 
 }  // namespace nextview

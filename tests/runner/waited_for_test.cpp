@@ -96,5 +96,24 @@ TEST(HeardRun, IsPausedBetweenViewsOnly) {
   EXPECT_FALSE(heard.paused()) << "nothing was heard of the viewer for a minute";
 }
 
+// By the clock, of a run that is paced to be watched.
+TEST(WatchedMotion, TakesAsLongAsItsGoalAndAScan) {
+  HeardRun heard = run_at_goal_of(1);
+  goal_t goal{};
+  goal.view = 2;
+  goal.attempt = 1;
+  goal.path_length_m = 30.0;
+  run_config_t config{};
+  config.base.base_speed_m_s = 0.5;
+  config.base.lift_speed_m_s = 1.0;
+  config.base.turn_speed_rad_s = 10.0;
+  config.sensor.scan_duration_s = 2.0;
+  heard.record.add(goal);
+  EXPECT_DOUBLE_EQ(watched_motion_s(heard.record, config, 1.0), 62.0);
+  EXPECT_DOUBLE_EQ(watched_motion_s(heard.record, config, 4.0), 15.5);
+  EXPECT_EQ(watched_motion_s(heard.record, config, 0.0), 0.0) << "not paced";
+  EXPECT_EQ(watched_motion_s(run_at_goal_of(0).record, config, 1.0), 0.0) << "nothing is under way";
+}
+
 }  // namespace
 }  // namespace nextview
