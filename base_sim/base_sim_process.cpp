@@ -2,8 +2,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <vector>
 
+#include "lcmtypes/parameter_bounds.h"
+#include "lcmtypes/rejected_message.h"
 #include "lcmtypes/timing_message.h"
 #include "scene/scene_config.h"
 #include "sensor/sensor_config.h"
@@ -13,7 +16,11 @@ namespace {
 
 arrival_t arrival_message(const goal_t& goal, const Motion& motion) {
   arrival_t arrival{};
-  arrival.utime = goal.utime + std::llround(motion.duration_s * 1e6);
+  // However slow the base: the end of time is not gone beyond.
+  arrival.utime =
+      static_cast<std::int64_t>(std::min(bounds::kTime.most, std::round(motion.duration_s * 1e6)));
+  arrival.utime =
+      std::min(arrival.utime + goal.utime, static_cast<std::int64_t>(bounds::kTime.most));
   arrival.view = goal.view;
   arrival.attempt = goal.attempt;
   arrival.arrived = motion.arrived;
@@ -47,7 +54,24 @@ BaseSimProcess::BaseSimProcess(Bus& bus, const run_config_t& config,
       scene_(load_scene(config, interrupted)),
       base_(base_limits_of(config), start_pose_of(config), scene_),
       real_time_(real_time) {
-  bus_.on<goal_t>([this](const goal_t& goal) { goals_[key_of(goal)] = goal; });
+  bus_.on<goal_t>([this, config](const goal_t& goal) {
+    check_fits_run(config, goal.view, goal.attempt);
+    receive(goal);
+  });
+}
+
+void BaseSimProcess::receive(const goal_t& goal) {
+  const MessageKey key = key_of(goal);
+  if (key < next_) return;  // carried out
+  if (key != next_) {
+    // There is no later one before this base has said what became of this one.
+    if (key.view <= reached()) throw NotNow();
+    throw RejectedMessage("view " + std::to_string(key.view) + ", attempt " +
+                          std::to_string(key.attempt) + " is ahead of the run: next here is view " +
+                          std::to_string(next_.view) + ", attempt " +
+                          std::to_string(next_.attempt));
+  }
+  goals_[key] = goal;
 }
 
 bool BaseSimProcess::step() {

@@ -37,6 +37,8 @@ class BaseSimProcess : public BusProcess {
   void on_missing(const request_t& request) override;
 
  private:
+  /// @throws RejectedMessage for a goal that cannot have been given yet
+  void receive(const goal_t& goal);
   void move_to(const goal_t& goal);
   void publish_moved();
 

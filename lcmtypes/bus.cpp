@@ -1,5 +1,6 @@
 #include "lcmtypes/bus.h"
 
+#include <algorithm>
 #include <iostream>
 #include <limits>
 #include <stdexcept>
@@ -19,13 +20,23 @@ constexpr std::size_t kAskedRemembered = 256;
 /// waits for them asks meanwhile for what is on its way already.
 constexpr int kPartsOnceWithin = 10;
 
+std::string describe(const MessageKey& key) {
+  std::string text;
+  if (key.view > 0) text += "view " + std::to_string(key.view) + ", ";
+  if (key.attempt > 0) text += "attempt " + std::to_string(key.attempt) + ", ";
+  return text + "part " + std::to_string(key.part);
+}
+
 }  // namespace
 
 Bus::Bus(const std::string& lcm_url, std::int64_t run, std::string role)
     : Bus(std::make_unique<LcmTransport>(lcm_url), run, std::move(role)) {}
 
 Bus::Bus(std::unique_ptr<Transport> transport, std::int64_t run, std::string role)
-    : transport_(std::move(transport)), run_(run), role_(std::move(role)) {
+    : transport_(std::move(transport)),
+      run_(run),
+      role_(std::move(role)),
+      drop_lines_(role_, std::cerr) {
   on<request_t>([this](const request_t& request) { answer(request); });
   on<parts_request_t>([this](const parts_request_t& request) { answer_parts(request); });
   on<recorded_t>([this](const recorded_t& recorded) {
@@ -71,17 +82,6 @@ std::size_t Bus::remembered_bytes() const {
     for (const auto& [key, message] : messages) bytes += message.bytes.size();
   }
   return bytes;
-}
-
-std::size_t Bus::remembered_keys() const {
-  std::size_t keys = 0;
-  for (const auto& [channel, seen] : seen_) keys += seen.keys.size();
-  return keys;
-}
-
-bool Bus::take_key(std::string_view channel, const MessageKey& key) {
-  Seen& seen = seen_[std::string(channel)];
-  return key.view >= seen.from_view && seen.keys.insert(key).second;
 }
 
 void Bus::take_channel(std::string_view channel) {
@@ -210,9 +210,106 @@ void Bus::forget_settled() {
   }
 }
 
-void Bus::drop(std::string_view channel, std::string_view reason) {
-  ++counters_.refused;
-  std::cerr << role_ << ": dropped a message on " << channel << ": " << reason << std::endl;
+void Bus::drop(std::string_view channel, std::string_view reason, std::int64_t count) {
+  counters_.refused += count;
+  drop_lines_.say(channel, reason, count, DropLines::Clock::now());
+}
+
+bool Bus::handle(std::chrono::milliseconds timeout) {
+  const bool handled = transport_->handle(timeout);
+  for (const auto& [reason, count] : transport_->take_refused()) drop({}, reason, count);
+  drop_lines_.tell_sum_when_due(DropLines::Clock::now());
+  if (!early_.empty()) drop_stale();
+  return handled;
+}
+
+void Bus::receive(std::string_view channel, Transport::Receiver receiver) {
+  receivers_.emplace(channel, receiver);
+  transport_->subscribe(channel, std::move(receiver));
+}
+
+bool Bus::is_new(std::string_view channel, const MessageKey& key,
+                 std::span<const std::uint8_t> bytes) {
+  const auto published = published_.find(channel);
+  if (published != published_.end()) {
+    const auto own = published->second.find(key);
+    if (own != published->second.end() && !std::ranges::equal(own->second.bytes, bytes)) {
+      drop(channel, describe(key) + " differs from the one published here");
+      return false;
+    }
+  }
+  switch (heard_.judge(channel, key, bytes)) {
+    case HeardMessages::Verdict::New:
+      return true;
+    case HeardMessages::Verdict::Repeated:
+      ++counters_.repeated;
+      return false;
+    case HeardMessages::Verdict::Different:
+      drop(channel, describe(key) + " differs from the one that was taken before");
+      return false;
+  }
+  return false;
+}
+
+void Bus::taken(std::string_view channel, const MessageKey& key,
+                std::span<const std::uint8_t> bytes) {
+  heard_.take(channel, key, bytes);
+  ++counters_.delivered;
+  note_come(channel, key);
+  if (!early_.wait_for(channel)) return;
+  more_to_judge_ = true;
+  if (!judging_again_) judge_again();
+}
+
+void Bus::keep_early(std::string_view channel, const MessageKey& key,
+                     std::span<const std::uint8_t> bytes, const TooEarly& early) {
+  const auto now = EarlyMessages::Clock::now();
+  const bool kept = early.then() == TooEarly::Then::JudgeAgain;
+  if (!kept) drop(channel, early.what());
+  EarlyMessages::Message message{
+      std::string(channel),         key,          {},
+      std::string(early.channel()), early.what(), early_since_.value_or(now)};
+  if (kept) message.bytes.assign(bytes.begin(), bytes.end());
+  if (!early_.keep(std::move(message)) && kept) {
+    return drop(channel, std::string(early.what()) + ", and no more such messages can be kept");
+  }
+  if (judging_again_) return;  // it has been asked for
+  // Once for all parts of an image; again when one of them comes again, or after a while.
+  constexpr std::chrono::milliseconds kLong{20};
+  const MessageKey wanted{early.view(), early.attempt(), 0};
+  const bool asked = asked_early_.wanted == wanted && asked_early_.for_whom != key &&
+                     now - asked_early_.when < kLong;
+  if (asked) return;
+  asked_early_ = {wanted, key, now};
+  request_channel(early.channel(), early.view(), early.attempt());
+}
+
+void Bus::judge_again() {
+  judging_again_ = true;
+  try {
+    while (std::exchange(more_to_judge_, false)) {
+      for (const EarlyMessages::Message& message : early_.take_all()) {
+        early_since_ = message.since;
+        if (message.bytes.empty()) {
+          request_channel(message.channel, message.key.view, message.key.attempt);
+          continue;
+        }
+        receivers_.find(message.channel)->second(message.bytes);
+      }
+    }
+  } catch (...) {
+    judging_again_ = false;
+    early_since_.reset();
+    throw;
+  }
+  judging_again_ = false;
+  early_since_.reset();
+}
+
+void Bus::drop_stale() {
+  for (const EarlyMessages::Message& message : early_.take_stale(EarlyMessages::Clock::now())) {
+    if (!message.bytes.empty()) drop(message.channel, message.reason);
+  }
 }
 
 }  // namespace nextview

@@ -6,6 +6,7 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <set>
 #include <span>
 #include <string>
@@ -15,6 +16,9 @@
 
 #include "lcmtypes/channels.h"
 #include "lcmtypes/decode.h"
+#include "lcmtypes/drop_lines.h"
+#include "lcmtypes/early_messages.h"
+#include "lcmtypes/heard_messages.h"
 #include "lcmtypes/rejected_message.h"
 #include "lcmtypes/response_time.h"
 #include "lcmtypes/transport.h"
@@ -26,7 +30,7 @@ struct BusCounters {
   std::int64_t delivered = 0;  ///< to handlers; requests and status messages not counted
   std::int64_t foreign = 0;    ///< messages of other runs, ignored
   std::int64_t repeated = 0;   ///< messages seen before, ignored
-  std::int64_t refused = 0;    ///< messages that cannot be right
+  std::int64_t refused = 0;    ///< messages that cannot be right, and datagrams that are none
   std::int64_t lost = 0;       ///< messages sent again because somebody asked
 };
 
@@ -44,6 +48,10 @@ struct PartRange {
 /// that it is in the log (recorded_t), from which the run answers then. Receivers see each key
 /// once. Whoever waits requests again on a timer of its own; nothing else keeps a run whole on a
 /// bus that may lose.
+///
+/// Anybody may publish. Under a key that has been taken, or that this process has published itself,
+/// another message is refused; so is what a handler rejects. What is refused is counted, and said
+/// in a line as long as there are few (DropLines).
 class Bus {
  public:
   /// Joins a run over LCM.
@@ -86,12 +94,10 @@ class Bus {
   /// through with them need not remember which of them have come.
   template <class Message>
   void ignore_before(int view) {
-    Seen& seen = seen_[std::string(Channel<Message>::name)];
-    seen.from_view = std::max(seen.from_view, view);
-    seen.keys.erase(seen.keys.begin(), seen.keys.lower_bound({seen.from_view, 0, 0}));
+    heard_.ignore_before(Channel<Message>::name, view);
   }
   /// How many keys of messages that have come are remembered.
-  std::size_t remembered_keys() const;
+  std::size_t remembered_keys() const { return heard_.size(); }
 
   /// The views up to which the run answers for what was published here, and nobody else need: it
   /// has said that all of them is in the log. The last few are kept all the same, so that nobody
@@ -136,10 +142,18 @@ class Bus {
   /// asks for what it needs itself. The handler sees everybody's requests and picks its own.
   void on_missing(std::function<void(const request_t&)> handler);
 
+  /// Finds that a message that was taken cannot have been right: another one may come in its place.
+  template <class Message>
+  void take_back(const MessageKey& key, std::string_view reason) {
+    heard_.forget(Channel<Message>::name, key);
+    drop(Channel<Message>::name, reason);
+  }
+
   /// Waits for one message and handles it.
   /// @return false when none came within the timeout, or a signal interrupted the wait
-  /// @throws what a handler throws, RejectedMessage apart; BusError when the bus has broken down
-  bool handle(std::chrono::milliseconds timeout) { return transport_->handle(timeout); }
+  /// @throws what a handler throws, RejectedMessage, TooEarly and NotNow apart; BusError when the
+  ///         bus has broken down
+  bool handle(std::chrono::milliseconds timeout);
 
  private:
   using Clock = std::chrono::steady_clock;
@@ -148,23 +162,25 @@ class Bus {
     std::vector<std::uint8_t> bytes;
     Clock::time_point sent;
   };
-  struct Seen {
-    int from_view = 0;  ///< all before it counts as seen
-    std::set<MessageKey> keys;
-  };
   /// When a message was asked for, and how often.
   struct Asked {
     Clock::time_point first;
     int times = 0;
   };
+  /// What was last asked for because of a message that came too early.
+  struct AskedEarly {
+    MessageKey wanted;
+    MessageKey for_whom;
+    Clock::time_point when;
+  };
   using Answers = std::map<MessageKey, Published>;
 
   template <class Message>
   void subscribe(std::function<void(const Message&)> handler) {
-    transport_->subscribe(Channel<Message>::name, [this, handler = std::move(handler)](
-                                                      std::span<const std::uint8_t> bytes) {
-      deliver<Message>(bytes, handler);
-    });
+    receive(Channel<Message>::name,
+            [this, handler = std::move(handler)](std::span<const std::uint8_t> bytes) {
+              deliver<Message>(bytes, handler);
+            });
   }
   template <class Message>
   void deliver(std::span<const std::uint8_t> bytes,
@@ -177,13 +193,20 @@ class Bus {
   /// @return how often this message has been asked for since something of it came
   int note_asked(std::string_view channel, int view, int attempt);
   void note_come(std::string_view channel, const MessageKey& key);
-  bool take_key(std::string_view channel, const MessageKey& key);
   void answer(const request_t& request);
   void answer_parts(const parts_request_t& request);
   void send_again(std::string_view channel, Published& message, Clock::time_point now,
                   std::chrono::milliseconds once_within);
   void forget_settled();
-  void drop(std::string_view channel, std::string_view reason);
+  void drop(std::string_view channel, std::string_view reason, std::int64_t count = 1);
+  void receive(std::string_view channel, Transport::Receiver receiver);
+  /// Whether a message is new; else it has been counted as repeated, or refused.
+  bool is_new(std::string_view channel, const MessageKey& key, std::span<const std::uint8_t> bytes);
+  void taken(std::string_view channel, const MessageKey& key, std::span<const std::uint8_t> bytes);
+  void keep_early(std::string_view channel, const MessageKey& key,
+                  std::span<const std::uint8_t> bytes, const TooEarly& early);
+  void judge_again();
+  void drop_stale();
   void take_channel(std::string_view channel);
   void note_foreign(std::string_view channel, std::int64_t run);
 
@@ -193,13 +216,20 @@ class Bus {
   BusCounters counters_;
   std::function<void(const request_t&)> missing_;
   std::map<std::string, Answers, std::less<>> published_;
-  std::map<std::string, Seen, std::less<>> seen_;
+  HeardMessages heard_;
   std::map<std::pair<std::string, MessageKey>, Asked> asked_;  // attempt 0: whichever
   ResponseTime response_time_;
   std::chrono::milliseconds answer_once_within_{0};
   int recorded_views_ = 0;                      // as the run has said
   int latest_published_ = 0;                    // view
   std::set<std::string, std::less<>> handled_;  // channels
+  std::map<std::string, Transport::Receiver, std::less<>> receivers_;
+  EarlyMessages early_;
+  bool judging_again_ = false;
+  bool more_to_judge_ = false;
+  std::optional<EarlyMessages::Clock::time_point> early_since_;  // of the one judged again
+  AskedEarly asked_early_;
+  DropLines drop_lines_;
 };
 
 template <class Message>
@@ -213,19 +243,17 @@ void Bus::deliver(std::span<const std::uint8_t> bytes,
     return;
   }
   const MessageKey key = key_of(*decoded.message);
-  if (Channel<Message>::answered && !take_key(channel, key)) {
-    ++counters_.repeated;
-    return;
-  }
+  if (Channel<Message>::answered && !is_new(channel, key, bytes)) return;
   try {
     handler(*decoded.message);
-    if (!Channel<Message>::answered) return;
-    ++counters_.delivered;
-    note_come(channel, key);
+  } catch (const TooEarly& early) {
+    return keep_early(channel, key, bytes, early);
+  } catch (const NotNow&) {
+    return;
   } catch (const RejectedMessage& rejected) {
-    seen_[std::string(channel)].keys.erase(key);  // the right one may still come
-    drop(channel, rejected.what());
+    return drop(channel, rejected.what());  // the right one may still come
   }
+  if (Channel<Message>::answered) taken(channel, key, bytes);
 }
 
 }  // namespace nextview

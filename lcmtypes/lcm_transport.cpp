@@ -9,6 +9,8 @@
 #include <exception>
 #include <lcm/lcm-cpp.hpp>
 #include <list>
+#include <map>
+#include <optional>
 #include <stdexcept>
 #include <thread>
 #include <utility>
@@ -16,6 +18,7 @@
 #include "lcmtypes/bus_probe.h"
 #include "lcmtypes/channels.h"
 #include "lcmtypes/open_files.h"
+#include "lcmtypes/udpm_reader.h"
 
 namespace nextview {
 namespace {
@@ -83,10 +86,41 @@ struct LcmTransport::Connection {
     }
   }
 
+  /// By liblcm, of providers other than udpm.
+  void subscribe(const std::string& channel, Subscriber& subscriber) {
+    lcm::Subscription* subscription =
+        lcm.subscribeFunction(channel, &Connection::receive, &subscriber);
+    // The default drops all but the last 30 messages that wait, without a word.
+    if (subscription == nullptr || subscription->setQueueCapacity(0) != 0) {
+      throw BusError("LCM cannot subscribe to " + channel);
+    }
+  }
+  bool handle(std::chrono::milliseconds timeout) {
+    pollfd ready{lcm.getFileno(), POLLIN, 0};
+    const int count = poll(&ready, 1, static_cast<int>(std::max<std::int64_t>(timeout.count(), 0)));
+    if (count == 0 || (count < 0 && errno == EINTR)) return false;
+    if (count < 0 || lcm.handle() != 0) throw BusError("LCM has stopped receiving");
+    if (thrown) std::rethrow_exception(std::exchange(thrown, nullptr));
+    return true;
+  }
+
+  /// What has come over udpm.
+  bool handle_read(std::chrono::milliseconds timeout) {
+    const auto message = reader->next(timeout);
+    if (!message) return false;
+    const auto [first, last] = by_channel.equal_range(message->channel);
+    for (auto subscriber = first; subscriber != last; ++subscriber) {
+      subscriber->second->receiver(message->bytes);
+    }
+    return true;
+  }
+
   Pacer pacer;
   std::exception_ptr thrown;
   std::list<Subscriber> subscribers;  // never moved: LCM holds pointers
-  lcm::LCM lcm;                       // last, so that it goes first
+  std::multimap<std::string, Subscriber*, std::less<>> by_channel;
+  std::optional<UdpmReader> reader;
+  lcm::LCM lcm;  // last, so that it goes first
 };
 
 LcmTransport::LcmTransport(const std::string& lcm_url) {
@@ -96,6 +130,7 @@ LcmTransport::LcmTransport(const std::string& lcm_url) {
   probe_bus(url);
   connection_ = std::make_unique<Connection>(url);
   if (!connection_->lcm.good()) throw BusError("LCM cannot be opened with URL '" + url + "'");
+  if (is_udpm_url(url)) connection_->reader.emplace(parse_udpm_url(url));
 }
 
 LcmTransport::~LcmTransport() = default;
@@ -115,21 +150,18 @@ void LcmTransport::publish(std::string_view channel, std::span<const std::uint8_
 void LcmTransport::subscribe(std::string_view channel, Receiver receiver) {
   connection_->subscribers.push_back({connection_.get(), std::move(receiver)});
   Connection::Subscriber& subscriber = connection_->subscribers.back();
-  lcm::Subscription* subscription =
-      connection_->lcm.subscribeFunction(std::string(channel), &Connection::receive, &subscriber);
-  // The default drops all but the last 30 messages that wait, without a word.
-  if (subscription == nullptr || subscription->setQueueCapacity(0) != 0) {
-    throw BusError("LCM cannot subscribe to " + std::string(channel));
-  }
+  if (!connection_->reader) return connection_->subscribe(std::string(channel), subscriber);
+  connection_->by_channel.emplace(channel, &subscriber);
+  connection_->reader->listen_to(channel);
 }
 
 bool LcmTransport::handle(std::chrono::milliseconds timeout) {
-  pollfd ready{connection_->lcm.getFileno(), POLLIN, 0};
-  const int count = poll(&ready, 1, static_cast<int>(std::max<std::int64_t>(timeout.count(), 0)));
-  if (count == 0 || (count < 0 && errno == EINTR)) return false;
-  if (count < 0 || connection_->lcm.handle() != 0) throw BusError("LCM has stopped receiving");
-  if (connection_->thrown) std::rethrow_exception(std::exchange(connection_->thrown, nullptr));
-  return true;
+  return connection_->reader ? connection_->handle_read(timeout) : connection_->handle(timeout);
+}
+
+std::map<std::string, std::int64_t> LcmTransport::take_refused() {
+  if (!connection_->reader) return {};
+  return connection_->reader->take_refused();
 }
 
 }  // namespace nextview

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <span>
 #include <stdexcept>
 #include <string>
@@ -28,6 +29,9 @@ class Transport {
   /// Waits for one message and hands it to its receivers, from this thread; false when none came.
   /// What a receiver throws comes out here.
   virtual bool handle(std::chrono::milliseconds timeout) = 0;
+  /// What came since the last call and was refused unseen, as it can be no message: how often, by
+  /// the reason.
+  virtual std::map<std::string, std::int64_t> take_refused() { return {}; }
 };
 
 }  // namespace nextview

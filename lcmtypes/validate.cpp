@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 #include "lcmtypes/validate_checks.h"
 #include "sensor/range_image_check.h"
@@ -15,7 +16,7 @@ namespace {
 template <class Message>
 Checks check_key(const Message& message) {
   Checks checks;
-  checks.not_negative("utime", static_cast<double>(message.utime));
+  checks.within(bounds::kTime, static_cast<double>(message.utime));
   if constexpr (requires { message.view; }) {
     checks.require(message.view >= 1, fmt::format("view {}", message.view));
     checks.require(message.attempt >= 1, fmt::format("attempt {}", message.attempt));
@@ -26,6 +27,11 @@ Checks check_key(const Message& message) {
 void check_angles(Checks& checks, double pan_rad, double tilt_rad) {
   checks.within(bounds::kPan, pan_rad);
   checks.within(bounds::kTilt, tilt_rad);
+}
+
+void check_place(Checks& checks, std::string_view name, std::span<const double> position_m) {
+  checks.finite(name, position_m);
+  checks.within(bounds::kPlace.as(name), position_m);
 }
 
 Eigen::Matrix3d matrix_of(const double (&m)[3][3]) {
@@ -117,9 +123,9 @@ void check_surfaces(Checks& checks, const map_blocks_t& blocks) {
 std::string check(const goal_t& goal) {
   Checks checks = check_key(goal);
   checks.require(goal.waypoints >= 1, "no waypoint");
-  checks.finite("position_m", goal.position_m);
+  check_place(checks, "position_m", goal.position_m);
   check_angles(checks, goal.pan_rad, goal.tilt_rad);
-  for (const auto& waypoint : goal.waypoint_m) checks.finite("waypoint_m", waypoint);
+  for (const auto& waypoint : goal.waypoint_m) check_place(checks, "waypoint_m", waypoint);
   checks.not_negative("path_length_m", goal.path_length_m);
   checks.not_negative("fitness", goal.fitness);
   checks.within("share_occupied", goal.share_occupied, 0.0, 1.0);
@@ -149,9 +155,9 @@ std::string check(const search_t& search) {
 std::string check(const arrival_t& arrival) {
   Checks checks = check_key(arrival);
   checks.within("arrived", arrival.arrived, 0, 1);
-  checks.finite("true_position_m", arrival.true_position_m);
+  check_place(checks, "true_position_m", arrival.true_position_m);
   check_angles(checks, arrival.true_pan_rad, arrival.true_tilt_rad);
-  checks.finite("believed_position_m", arrival.believed_position_m);
+  check_place(checks, "believed_position_m", arrival.believed_position_m);
   check_angles(checks, arrival.believed_pan_rad, arrival.believed_tilt_rad);
   checks.not_negative("path_length_m", arrival.path_length_m);
   checks.require((arrival.arrived == 0) != arrival.refusal.empty(),
@@ -170,7 +176,7 @@ std::string check(const range_image_t& image) {
   checks.within(bounds::kRangeMax, image.range_max_m);
   checks.require(are_range_limits({image.range_min_m, image.range_max_m}),
                  "range_min_m is not below range_max_m");
-  checks.finite("position_m", image.position_m);
+  check_place(checks, "position_m", image.position_m);
   check_angles(checks, image.pan_rad, image.tilt_rad);
   checks.require(is_rotation(matrix_of(image.world_from_sensor)),
                  "world_from_sensor is not a rotation");
@@ -180,7 +186,7 @@ std::string check(const range_image_t& image) {
 
 std::string check(const commit_t& commit) {
   Checks checks = check_key(commit);
-  checks.finite("used_position_m", commit.used_position_m);
+  check_place(checks, "used_position_m", commit.used_position_m);
   check_angles(checks, commit.pan_rad, commit.tilt_rad);
   for (const std::int64_t count :
        {commit.unmarked_voxels, commit.occluded_voxels, commit.occlusion_plane_voxels,
@@ -221,7 +227,7 @@ std::string check(const status_t& status) {
 
 std::string check(const request_t& request) {
   Checks checks;
-  checks.not_negative("utime", static_cast<double>(request.utime));
+  checks.within(bounds::kTime, static_cast<double>(request.utime));
   checks.require(request.view >= 0, fmt::format("view {}", request.view));
   checks.require(request.attempt >= 0, fmt::format("attempt {}", request.attempt));
   check_wanted(checks, request);
@@ -230,7 +236,7 @@ std::string check(const request_t& request) {
 
 std::string check(const timing_t& timing) {
   Checks checks;
-  checks.not_negative("utime", static_cast<double>(timing.utime));
+  checks.within(bounds::kTime, static_cast<double>(timing.utime));
   checks.require(timing.view >= 1, fmt::format("view {}", timing.view));
   checks.require(timing.attempt >= 0, fmt::format("attempt {}", timing.attempt));
   for (const double duration_s : timing.duration_s) checks.not_negative("duration_s", duration_s);
@@ -242,7 +248,7 @@ std::string check(const timing_t& timing) {
 std::string check(const map_blocks_t& blocks) {
   constexpr std::uint8_t kLargestLabel = 4;
   Checks checks;
-  checks.not_negative("utime", static_cast<double>(blocks.utime));
+  checks.within(bounds::kTime, static_cast<double>(blocks.utime));
   checks.require(
       blocks.since_view >= 0 && blocks.view >= blocks.since_view,
       "view " + std::to_string(blocks.view) + " since view " + std::to_string(blocks.since_view));
@@ -292,7 +298,7 @@ std::string check(const seal_t& seal) {
 
 std::string check(const parts_request_t& request) {
   Checks checks;
-  checks.not_negative("utime", static_cast<double>(request.utime));
+  checks.within(bounds::kTime, static_cast<double>(request.utime));
   checks.require(request.view >= 1, fmt::format("view {}", request.view));
   checks.require(request.attempt >= 1, fmt::format("attempt {}", request.attempt));
   checks.require(request.ranges >= 1, "asks for no part");

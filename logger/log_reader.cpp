@@ -13,7 +13,6 @@
 #include "logger/log_event.h"
 
 namespace nextview {
-
 /// A file that may grow, seen through a window that is moved over it.
 struct LogReader::File {
   explicit File(const std::filesystem::path& file)

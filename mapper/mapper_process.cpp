@@ -32,14 +32,22 @@ std::variant<MapBuilder, PagedMapBuilder> make_builder(const run_config_t& confi
 
 MapperProcess::MapperProcess(Bus& bus, const run_config_t& config,
                              const std::optional<VoxelIndex>& window)
-    : bus_(bus), config_(config), builder_(make_builder(config, window)) {
+    : bus_(bus), config_(config), builder_(make_builder(config, window)), course_(config) {
   if (const auto* builder = std::get_if<MapBuilder>(&builder_)) history_.emplace(builder->map());
+  bus_.on<goal_t>([this](const goal_t& goal) { course().add(goal); });
+  bus_.on<arrival_t>([this](const arrival_t& arrival) { course().add(arrival); });
   bus_.on<range_image_t>([this](const range_image_t& part) { receive(part); });
 }
 
+RunCourse& MapperProcess::course() {
+  course_.at_view(std::max(next_view_, reached() + 1));
+  return course_;
+}
+
 void MapperProcess::receive(const range_image_t& part) {
-  check_fits_run(part, config_);
   if (part.view < next_view_) return;
+  check_fits_run(part, config_);
+  course().check(part);
   if (auto image = assembler_.add(part)) waiting_.emplace(part.view, std::move(*image));
 }
 
@@ -77,6 +85,9 @@ void MapperProcess::fold(const ReceivedRangeImage& received) {
   waiting_.erase(waiting_.begin(), waiting_.upper_bound(next_view_));
   ++next_view_;
   bus_.ignore_before<range_image_t>(next_view_);
+  bus_.ignore_before<arrival_t>(next_view_);
+  bus_.ignore_before<goal_t>(next_view_);
+  course_.forget_before(next_view_);
 }
 
 // An answer is all of one view: what is folded while it is published waits for the next.
@@ -112,7 +123,7 @@ void MapperProcess::on_missing(const request_t& request) {
   // Whoever asks again before the answer begins gets one.
   if (request.wanted_channel != Channel<map_blocks_t>::name) return;
   if (history_) {
-    blocks_wanted_.insert(request.view);
+    blocks_wanted_.insert(std::min(request.view, next_view_ - 1));
   } else if (!refusal_said_) {
     refusal_said_ = true;
     std::cerr << Channel<map_blocks_t>::name

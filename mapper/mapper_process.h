@@ -13,6 +13,7 @@
 #include "mapper/map_builder.h"
 #include "mapper/paged_map_builder.h"
 #include "sensor/range_image_message.h"
+#include "sensor/run_course.h"
 
 namespace nextview {
 
@@ -37,6 +38,7 @@ class MapperProcess : public BusProcess {
   void on_missing(const request_t& request) override;
 
  private:
+  RunCourse& course();
   void receive(const range_image_t& part);
   FoldCounts fold_into_map(const RangeImage& image);
   void fold(const ReceivedRangeImage& received);
@@ -45,6 +47,7 @@ class MapperProcess : public BusProcess {
   Bus& bus_;
   run_config_t config_;
   std::variant<MapBuilder, PagedMapBuilder> builder_;
+  RunCourse course_;
   RangeImageAssembler assembler_;
   std::map<int, ReceivedRangeImage> waiting_;  // by view; the first attempt that came whole counts
   int next_view_ = 1;

@@ -21,21 +21,38 @@ PlannerProcess::PlannerProcess(Bus& bus, const run_config_t& config)
 
 PlannerProcess::PlannerProcess(Bus& bus, const run_config_t& config,
                                std::unique_ptr<ViewPlanner> planner)
-    : bus_(bus), config_(config), planner_(std::move(planner)) {
+    : bus_(bus), config_(config), planner_(std::move(planner)), course_(config) {
   subscribe();
 }
 
 void PlannerProcess::subscribe() {
   bus_.on<arrival_t>([this](const arrival_t& arrival) {
+    if (is_over(arrival.view, arrival.attempt)) return;
+    course_.add(arrival);
     if (arrival.arrived == 0) refusals_.emplace(std::pair(arrival.view, arrival.attempt), arrival);
   });
   bus_.on<range_image_t>([this](const range_image_t& part) {
+    if (is_over(part.view, part.attempt)) return;
     check_fits_run(part, config_);
+    course_.check(part);
     auto image = assembler_.add(part);
     if (image) images_.emplace(part.view, std::move(*image));
   });
-  bus_.on<commit_t>([this](const commit_t& commit) { commits_.emplace(commit.view, commit); });
+  bus_.on<commit_t>([this](const commit_t& commit) {
+    if (is_over(commit.view, commit.attempt)) return;
+    commits_.emplace(commit.view, commit);
+  });
   bus_.on<pace_t>([this](const pace_t& pace) { pace_.hear(pace, Clock::now()); });
+}
+
+bool PlannerProcess::is_over(int view, int attempt) const {
+  const std::pair of_message(view, attempt);
+  const std::pair present(view_, attempt_);
+  if (of_message < present) return true;
+  if (of_message == present) return false;
+  if (view <= reached()) throw NotNow();
+  throw RejectedMessage("no goal asked for view " + std::to_string(view) + ", attempt " +
+                        std::to_string(attempt));
 }
 
 bool PlannerProcess::held() {
@@ -156,6 +173,9 @@ void PlannerProcess::publish_goal(goal_t goal) {
   goal.utime = utime_;
   goal.view = view_;
   goal.attempt = attempt_;
+  course_.at_view(view_);
+  course_.forget_before(view_);
+  course_.add(goal);
   bus_.publish(std::move(goal));
   idle_since_ = Clock::now();
 }

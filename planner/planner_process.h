@@ -12,6 +12,7 @@
 #include "lcmtypes/heard_pace.h"
 #include "planner/view_planner.h"
 #include "sensor/range_image_message.h"
+#include "sensor/run_course.h"
 
 namespace nextview {
 
@@ -42,6 +43,10 @@ class PlannerProcess : public BusProcess {
   using Clock = std::chrono::steady_clock;
 
   void subscribe();
+  /// Whether what is said of an attempt at a view comes after that is over.
+  /// @throws RejectedMessage when there is no such attempt yet; NotNow when it is one of a process
+  ///         that this one takes the place of
+  bool is_over(int view, int attempt) const;
   /// Whether the next goal has to wait because somebody has paused the run.
   bool held();
   void fold(const ReceivedRangeImage& received);
@@ -58,6 +63,7 @@ class PlannerProcess : public BusProcess {
   std::unique_ptr<ViewPlanner> planner_;
 
   // What has come and waits for its turn.
+  RunCourse course_;
   RangeImageAssembler assembler_;
   std::map<int, ReceivedRangeImage> images_;           // by view
   std::map<int, commit_t> commits_;                    // by view

@@ -7,7 +7,8 @@ namespace nextview {
 namespace {
 
 /// Options of what a run leaves and shows, which the bounds have nothing to do with.
-const std::set<std::string> kOfTheRunAlone = {"--view", "--paused", "--real-time", "--verbose"};
+const std::set<std::string> kOfTheRunAlone = {"--view", "--paused", "--private", "--real-time",
+                                              "--verbose"};
 
 }  // namespace
 

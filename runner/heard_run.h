@@ -28,6 +28,7 @@ struct HeardRun {
   std::optional<Clock::time_point> last_commit;
 
   HeardPace pace;
+  bool ending = false;  ///< this process ends the run itself: no other end counts
 
   /// Whether somebody who watches the run has paused it, so that nothing is to be waited for.
   bool paused() const;

@@ -1,5 +1,6 @@
 #include "runner/log_completion.h"
 
+#include <algorithm>
 #include <chrono>
 #include <vector>
 
@@ -112,7 +113,7 @@ void publish_into_log(const stop_t& stop, RunLog& log, Bus& bus) {
 void log_early_end(const EndsEarly& end, RunLog& log, Bus& bus, HeardRun& heard) {
   read_log_to_its_end(log, bus, heard);
   stop_t own{};
-  own.views = log.record().views_taken();
+  own.views = std::min(log.record().views_taken(), heard.record.latest_view());
   own.stop_reason = std::string(to_string(end.reason));
   own.detail = end.detail;
   const std::optional<stop_t>& recorded = log.record().stop();

@@ -13,6 +13,7 @@
 #include "lcmtypes/open_files.h"
 #include "lcmtypes/standard_output.h"
 #include "runner/exit_status.h"
+#include "runner/private_network.h"
 #include "runner/run_signals.h"
 #include "runner/run_supervisor.h"
 
@@ -121,6 +122,14 @@ int main(int argc, char** argv) {
   if (!options) return exit_status;
   std::signal(SIGPIPE, SIG_IGN);
   try {
+    // Before anything has made a thread.
+    if (options->own_network) {
+      const std::string why_not = nextview::enter_private_network();
+      if (!why_not.empty()) {
+        throw std::runtime_error("--private: there can be no network of its own here (" + why_not +
+                                 "): leave it out");
+      }
+    }
     return run(*options, start);
   } catch (const std::exception& error) {
     std::cerr << "nextview_run: " << error.what() << std::endl;

@@ -22,7 +22,7 @@ void check_resume(const CLI::App& app, RunOptions& options) {
   const std::set<std::string> free = {"--resume",  "--without",   "--elsewhere", "--planner",
                                       "--lcm-url", "--patience",  "--cache",     "--no-coverage",
                                       "--verbose", "--real-time", "--view",      "--paused",
-                                      "--window"};
+                                      "--window",  "--private"};
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() == 0 || free.contains(option->get_name())) continue;
     throw CLI::ValidationError(
@@ -111,6 +111,12 @@ void add_run_options(CLI::App& app, RunOptions& options) {
       ->group(group);
   app.add_flag("--view", options.view,
                "Show the run in a browser, at the address it prints, until Ctrl-C")
+      ->group(group);
+  app.add_flag(
+         "--private", options.own_network,
+         "The processes and the recorder meet in a network of their own, into and out of which "
+         "nothing goes; what joins it is printed")
+      ->excludes(app.get_option("--view"))
       ->group(group);
   app.add_flag("--paused", options.paused,
                "With --view: begin when the page says so, with a step or to go on")

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 #include <sys/resource.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -17,6 +18,7 @@
 #include "runner/finished_log.h"
 #include "runner/give_way.h"
 #include "runner/log_completion.h"
+#include "runner/private_network.h"
 #include "runner/run_outcome.h"
 #include "runner/run_signals.h"
 #include "runner/waited_for.h"
@@ -94,9 +96,11 @@ FinishedRun RunSupervisor::carry_out(Clock::time_point program_start) {
       scoring_.start();  // only its tables are missing
     } else {
       start_up();
-      watch();
-      complete_log();
-      collect_statuses();
+      do {
+        watch();
+        complete_log();
+        collect_statuses();
+      } while (!heard_.record.stop());  // a planner that says how it is, and has gone on
     }
   } catch (const EndsEarly& end) {
     end_early(end);
@@ -159,6 +163,10 @@ void RunSupervisor::start_up() {
                      options);
   if (options_.verbose || !options_.without.empty()) {
     progress_.say(fmt::format("bus: {}, run {}", lcm_url_, setup_.config.run));
+  }
+  if (options_.own_network) {
+    progress_.say(fmt::format("in a network of its own; to join it: {} COMMAND, such as ./spy '{}'",
+                              command_to_join_network_of(::getpid()), lcm_url_));
   }
 
   for (const std::string& role : options_.elsewhere) {
@@ -277,7 +285,12 @@ void RunSupervisor::complete_log() {
   std::int64_t read = 0;
   for (;;) {
     log_->read_on();
-    const std::vector<MissingMessage> missing = log_->record().missing();
+    const auto& stop = heard_.record.stop();
+    if (!stop) return;  // it was none
+    // What a stranger has said of views there are not need not be made whole.
+    std::vector<MissingMessage> missing = log_->record().missing();
+    std::erase_if(
+        missing, [&stop](const MissingMessage& message) { return message.view > stop->views + 1; });
     if (missing.empty()) return;
     // What is asked for is recorded too: the log grows, and is none the better for it.
     if (missing != had_missing) heard_.last_progress = Clock::now();
@@ -318,6 +331,7 @@ void RunSupervisor::collect_statuses() {
 }
 
 void RunSupervisor::end_early(const EndsEarly& end) {
+  heard_.ending = true;
   ended_early_ = end;
   if (!processes_ || !bus_) return;
   processes_->end_planner();

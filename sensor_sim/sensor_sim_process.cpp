@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "lcmtypes/parameter_bounds.h"
 #include "lcmtypes/timing_message.h"
 #include "scene/scene_config.h"
 #include "sensor/range_image_message.h"
@@ -28,13 +29,21 @@ SensorSimProcess::SensorSimProcess(Bus& bus, const run_config_t& config,
       rays_(make_ray_table(sensor_of(config))),
       part_bytes_(part_bytes),
       baseline_m_(baseline_m_of(sensor_of(config))),
-      real_time_(real_time) {
+      real_time_(real_time),
+      course_(config) {
+  bus_.on<goal_t>([this](const goal_t& goal) { course().add(goal); });
   bus_.on<arrival_t>([this](const arrival_t& arrival) {
+    course().add(arrival);
     if (asked_for_ && arrival.view >= asked_for_->view) asked_for_.reset();
     if (arrival.arrived == 0) return;
     arrivals_.emplace(key_of(arrival), arrival);
     to_scan_.push_back(key_of(arrival));
   });
+}
+
+RunCourse& SensorSimProcess::course() {
+  course_.at_view(std::max(latest_view_, reached()) + 1);
+  return course_;
 }
 
 bool SensorSimProcess::step() {
@@ -69,7 +78,9 @@ SensorSimProcess::Scanned SensorSimProcess::scan_at(const arrival_t& arrival) co
   image.position_m = image.pose.position_m;
   image.world_from_sensor = world_from_sensor_rotation(image.pose.pan_rad, image.pose.tilt_rad);
 
-  const std::int64_t utime = arrival.utime + std::llround(config_.sensor.scan_duration_s * 1e6);
+  const std::int64_t utime =
+      std::min<std::int64_t>(arrival.utime + std::llround(config_.sensor.scan_duration_s * 1e6),
+                             static_cast<std::int64_t>(bounds::kTime.most));
   return {
       range_image_messages(image, arrival.view, arrival.attempt, utime, part_bytes_),
       timing_message(bus_.role(), utime, arrival.view, arrival.attempt, {{"scan", wall.count()}})};
@@ -83,7 +94,9 @@ void SensorSimProcess::publish_scanned() {
   const int settled = bus_.settled_views();
   arrivals_.erase(arrivals_.begin(), arrivals_.lower_bound({settled + 1, 0, 0}));
   std::erase_if(to_scan_, [settled](const MessageKey& key) { return key.view <= settled; });
+  bus_.ignore_before<goal_t>(settled + 1);
   bus_.ignore_before<arrival_t>(settled + 1);
+  course_.forget_before(settled + 1);
 }
 
 std::chrono::milliseconds SensorSimProcess::longest_wait() const {

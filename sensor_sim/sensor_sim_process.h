@@ -10,6 +10,7 @@
 #include "lcmtypes/real_time.h"
 #include "scene/scene.h"
 #include "sensor/range_image_message.h"
+#include "sensor/run_course.h"
 #include "sensor/sensor_geometry.h"
 
 namespace nextview {
@@ -42,6 +43,7 @@ class SensorSimProcess : public BusProcess {
     std::vector<range_image_t> parts;
     timing_t timing;
   };
+  RunCourse& course();
   Scanned scan_at(const arrival_t& arrival) const;
   void publish_scanned();
 
@@ -56,6 +58,7 @@ class SensorSimProcess : public BusProcess {
   int latest_view_ = 0;                       // scanned
   std::optional<MessageKey> asked_for_;       // somebody waits for a scan at this arrival
   RealTime real_time_;
+  RunCourse course_;
   std::optional<Scanned> scanned_;  // not published yet: the scan is under way
 };
 

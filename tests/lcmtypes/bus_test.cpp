@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "tests/lcmtypes/examples.h"
 #include "tests/lcmtypes/lossy_network.h"
 
@@ -330,6 +332,132 @@ TEST_F(BusPair, RefusesToPublishWhatItWouldNotAccept) {
   other.pan_rad = 1.0;
   EXPECT_THROW(planner_.publish(other), std::logic_error);
   EXPECT_EQ(on_channel("NEXTVIEW_GOAL").size(), 1U);
+}
+
+TEST_F(BusPair, RefusesAnotherMessageUnderAKeyThatWasTaken) {
+  std::vector<double> pans;
+  mapper_.on<goal_t>([&](const goal_t& goal) { pans.push_back(goal.pan_rad); });
+  goal_t goal = example<goal_t>();
+  planner_.publish(goal);
+  settle();
+  goal_t forged = goal;
+  forged.run = 7;
+  forged.pan_rad = 1.25;
+  testing::internal::CaptureStderr();
+  network_.connect()->publish("NEXTVIEW_GOAL", encode(forged));
+  planner_.publish(goal);
+  settle();
+  const std::string lines = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(
+      lines,
+      "mapper: dropped a message on NEXTVIEW_GOAL: view 2, attempt 1, part 0 differs from the "
+      "one that was taken before\n");
+  EXPECT_EQ(pans, std::vector<double>{goal.pan_rad});
+  EXPECT_EQ(mapper_.counters().refused, 1);
+  EXPECT_EQ(mapper_.counters().repeated, 1) << "the true one again";
+}
+
+TEST_F(BusPair, RefusesWhatSomebodyElseSaysUnderAKeyOfItsOwn) {
+  int received = 0;
+  planner_.on<goal_t>([&](const goal_t&) { ++received; });
+  planner_.publish(example<goal_t>());
+  goal_t forged = example<goal_t>();
+  forged.run = 7;
+  forged.pan_rad = 1.25;
+  testing::internal::CaptureStderr();
+  network_.connect()->publish("NEXTVIEW_GOAL", encode(forged));
+  settle();
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("differs from the one published here"),
+            std::string::npos);
+  EXPECT_EQ(received, 1);
+  EXPECT_EQ(planner_.counters().refused, 1);
+}
+
+/// Takes an arrival only after its goal.
+class Expectant {
+ public:
+  Expectant(Bus& bus, TooEarly::Then then) {
+    bus.on<goal_t>([this](const goal_t& goal) { goals_.insert(key_of(goal)); });
+    bus.on<arrival_t>([this, then](const arrival_t& arrival) {
+      if (!goals_.contains(key_of(arrival))) {
+        throw TooEarly("no goal asked for it", Channel<goal_t>::name, arrival.view, 0, then);
+      }
+      if (arrival.path_length_m > 1000.0) throw RejectedMessage("too long a way");
+      arrived_.push_back(arrival.path_length_m);
+    });
+  }
+  const std::vector<double>& arrived() const { return arrived_; }
+
+ private:
+  std::set<MessageKey> goals_;
+  std::vector<double> arrived_;
+};
+
+class TooEarlyOnTheBus : public BusPair {
+ protected:
+  TooEarlyOnTheBus() {
+    arrival_.view = goal_.view;
+    arrival_.attempt = goal_.attempt;
+  }
+  arrival_t arrival_on_a_way_of(double path_length_m) {
+    arrival_.path_length_m = path_length_m;
+    return arrival_;
+  }
+  /// By somebody who knows the run's number.
+  void forge(const arrival_t& arrival) {
+    arrival_t forged = arrival;
+    forged.run = 7;
+    stranger_->publish("NEXTVIEW_ARRIVAL", encode(forged));
+  }
+
+  goal_t goal_ = example<goal_t>();
+  arrival_t arrival_ = example<arrival_t>();
+  std::unique_ptr<Transport> stranger_ = network_.connect();
+};
+
+TEST_F(TooEarlyOnTheBus, AMessageIsRefusedAndAskedForAnewWhenWhatLedToItHasCome) {
+  const Expectant expectant(mapper_, TooEarly::Then::AskAnew);
+  testing::internal::CaptureStderr();
+  forge(arrival_on_a_way_of(2.0));
+  planner_.publish(arrival_on_a_way_of(3.0));
+  settle();
+  EXPECT_TRUE(expectant.arrived().empty());
+  EXPECT_EQ(mapper_.counters().refused, 2);
+  EXPECT_GE(on_channel("NEXTVIEW_REQUEST").size(), 1U) << "for the goal";
+  planner_.publish(goal_);
+  settle();
+  EXPECT_EQ(expectant.arrived(), std::vector<double>{3.0}) << "from its publisher";
+  EXPECT_NE(testing::internal::GetCapturedStderr().find("no goal asked for it"), std::string::npos);
+}
+
+TEST_F(TooEarlyOnTheBus, OneThatIsKeptIsJudgedWhenWhatLedToItHasCome) {
+  const Expectant expectant(mapper_, TooEarly::Then::JudgeAgain);
+  testing::internal::CaptureStderr();
+  forge(arrival_on_a_way_of(2000.0));
+  forge(arrival_on_a_way_of(3.0));
+  forge(arrival_on_a_way_of(4.0));
+  settle();
+  EXPECT_TRUE(expectant.arrived().empty());
+  EXPECT_EQ(mapper_.counters().refused, 0);
+  planner_.publish(goal_);
+  settle();
+  const std::string lines = testing::internal::GetCapturedStderr();
+  EXPECT_EQ(expectant.arrived(), std::vector<double>{3.0});
+  EXPECT_EQ(mapper_.counters().refused, 2) << lines;
+  EXPECT_NE(lines.find("too long a way"), std::string::npos) << lines;
+  EXPECT_NE(lines.find("differs from the one that was taken before"), std::string::npos) << lines;
+}
+
+TEST_F(TooEarlyOnTheBus, NoMoreAreKeptThanThereIsRoomFor) {
+  const Expectant expectant(mapper_, TooEarly::Then::JudgeAgain);
+  testing::internal::CaptureStderr();
+  constexpr int kMore = 100;
+  for (std::size_t i = 0; i < EarlyMessages::kMost + kMore; ++i) {
+    forge(arrival_on_a_way_of(static_cast<double>(i)));
+  }
+  settle();
+  testing::internal::GetCapturedStderr();
+  EXPECT_EQ(mapper_.counters().refused, kMore);
 }
 
 class LossyBusPair : public BusPair {

@@ -104,6 +104,31 @@ TEST_F(WrittenLog, ForeignMessagesAreCounted) {
   EXPECT_EQ(log.record().goal(1, 1), nullptr);
 }
 
+// As lcm-logger writes it of a datagram with an empty name, at which LCM's own reader stops.
+TEST_F(WrittenLog, IsReadPastAMessageOnAChannelWithoutAName) {
+  write(config_message());
+  std::FILE* file = log_->getFilePtr();
+  const auto write_nameless = [file](std::size_t bytes, std::size_t written) {
+    std::vector<std::uint8_t> event = {0xED, 0xA1, 0xDA, 0x01};
+    event.resize(27);  // number, time, and no name
+    event.push_back(static_cast<std::uint8_t>(bytes));
+    event.resize(event.size() + written, 0xFF);
+    std::fwrite(event.data(), event.size(), 1, file);
+    std::fflush(file);
+  };
+  write_nameless(3, 3);
+  write_nameless(0, 0);
+  write(goal_of(1, 1));
+  const RunLog log = read();
+  EXPECT_TRUE(log.record().config());
+  EXPECT_NE(log.record().goal(1, 1), nullptr);
+  EXPECT_EQ(log.counters().foreign, 2);
+  EXPECT_EQ(log.counters().messages, 4);
+  EXPECT_EQ(log.bytes_left(), 0);
+  write_nameless(9, 4);
+  EXPECT_EQ(read().bytes_left(), 32) << "half of one is none";
+}
+
 TEST_F(WrittenLog, OtherRunsAreNamedAndOneCanBeChosen) {
   run_config_t other = config_message();
   other.run += 5;

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <array>
 #include <map>
 #include <set>
@@ -91,6 +93,21 @@ class MapForOthers : public testing::TestWithParam<LossyNetwork::Faults> {
     other_.on<map_blocks_t>([this](const map_blocks_t& part) { parts_.push_back(part); });
   }
 
+  /// A goal and the arrival there, without which no image is believed.
+  void go_to(const SensorPose& pose, int view) {
+    goal_t goal = example<goal_t>();
+    arrival_t arrival = example<arrival_t>();
+    goal.utime = arrival.utime = 1000 * view;
+    goal.view = arrival.view = view;
+    goal.attempt = arrival.attempt = 1;
+    arrival.arrived = 1;
+    arrival.refusal.clear();
+    std::copy_n(pose.position_m.data(), 3, arrival.believed_position_m);
+    arrival.believed_pan_rad = pose.pan_rad;
+    arrival.believed_tilt_rad = pose.tilt_rad;
+    sensor_bus_.publish(goal);
+    sensor_bus_.publish(arrival);
+  }
   /// Scans from one of a few places and has the mapper fold it.
   void fold_view(int view) {
     RandomStream no_noise(1, view, 1, RandomPurpose::RangeNoise);
@@ -98,6 +115,7 @@ class MapForOthers : public testing::TestWithParam<LossyNetwork::Faults> {
     const RangeImage image = scan(room_, make_ray_table(sensor_of(config_)),
                                   range_limits_of(config_), pose, 0.0, no_noise);
     twin_.fold(image);
+    go_to(pose, view);
     for (range_image_t& part : range_image_messages(image, view, 1, 1000 * view)) {
       sensor_bus_.publish(std::move(part));
     }

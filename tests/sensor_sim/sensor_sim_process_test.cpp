@@ -34,7 +34,12 @@ TEST(SensorSimProcess, ScansAnOldViewAgainWhenItIsAskedForIt) {
   arrival.true_position_m[1] = arrival.believed_position_m[1] = 1.0;
   arrival.true_position_m[2] = arrival.believed_position_m[2] = 1.2;
   std::size_t remembered_bytes = 0;
+  goal_t goal = example<goal_t>();
+  goal.utime = 0;
+  goal.attempt = 1;
   for (arrival.view = 1; arrival.view <= kViews; ++arrival.view) {
+    goal.view = arrival.view;
+    base_bus.publish(goal);
     base_bus.publish(arrival);
     settle();
     if (arrival.view == kViews / 2) remembered_bytes = sensor_bus.remembered_bytes();
