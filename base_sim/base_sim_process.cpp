@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "lcmtypes/message_bounds.h"
 #include "lcmtypes/parameter_bounds.h"
 #include "lcmtypes/rejected_message.h"
 #include "lcmtypes/timing_message.h"

@@ -29,9 +29,9 @@ std::vector<EarlyMessages::Message> EarlyMessages::take_all() {
 }
 
 std::vector<EarlyMessages::Message> EarlyMessages::take_stale(Clock::time_point now) {
-  const auto stale = std::ranges::stable_partition(messages_, [now](const Message& message) {
-                       return now - message.since < kLongest;
-                     }).begin();
+  const auto stale = std::stable_partition(
+      messages_.begin(), messages_.end(),
+      [now](const Message& message) { return now - message.since < kLongest; });
   std::vector<Message> taken(std::make_move_iterator(stale),
                              std::make_move_iterator(messages_.end()));
   messages_.erase(stale, messages_.end());

@@ -78,10 +78,6 @@ inline constexpr Bounds kPan{"pan_rad", -2.0 * std::numbers::pi - kRounded_rad,
 inline constexpr Bounds kTilt{"tilt_rad", -0.5 * std::numbers::pi - kRounded_rad,
                               0.5 * std::numbers::pi + kRounded_rad};
 inline constexpr Bounds kBodyRadius{"body_radius_m", 1e-4, 5.0};
-/// Where a robot can say that it is, or is to go: a workspace and as much about it.
-inline constexpr Bounds kPlace{"a place, m", 2.0 * kWorkspace.least, 2.0 * kWorkspace.most};
-/// Simulated microseconds. Above it there is room for what is added to one.
-inline constexpr Bounds kTime{"utime", 0.0, 4e18};
 inline constexpr Bounds kLift{"lift_min_m or lift_max_m", kWorkspace.least, kWorkspace.most};
 inline constexpr Bounds kBaseSpeed{"base_speed_m_s", 1e-6, 1e6};
 inline constexpr Bounds kLiftSpeed{"lift_speed_m_s", 1e-6, 1e6};

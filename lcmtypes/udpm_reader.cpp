@@ -31,8 +31,9 @@ using Clock = std::chrono::steady_clock;
 class OwnAddresses {
  public:
   bool contain(in_addr address) {
-    if ((ntohl(address.s_addr) >> 24) == 127)
-      return true;  // the kernel keeps others from saying so
+    // Both the kernel takes from this machine only; the second is how one speaks whose only network
+    // is the loopback.
+    if (ntohl(address.s_addr) >> 24 == 127 || address.s_addr == INADDR_ANY) return true;
     if (addresses_.contains(address.s_addr)) return true;
     // One that is new, or a stranger, of whom there may be many.
     constexpr std::chrono::seconds kOften{1};

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <span>
 
+#include "lcmtypes/message_bounds.h"
 #include "lcmtypes/validate_checks.h"
 #include "sensor/range_image_check.h"
 

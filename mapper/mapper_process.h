@@ -9,11 +9,11 @@
 #include <variant>
 
 #include "lcmtypes/bus_process.h"
+#include "lcmtypes/run_course.h"
 #include "mapper/block_history.h"
 #include "mapper/map_builder.h"
 #include "mapper/paged_map_builder.h"
 #include "sensor/range_image_message.h"
-#include "sensor/run_course.h"
 
 namespace nextview {
 

@@ -10,9 +10,9 @@
 
 #include "lcmtypes/bus_process.h"
 #include "lcmtypes/heard_pace.h"
+#include "lcmtypes/run_course.h"
 #include "planner/view_planner.h"
 #include "sensor/range_image_message.h"
-#include "sensor/run_course.h"
 
 namespace nextview {
 

@@ -6,9 +6,9 @@
 #include <array>
 #include <string_view>
 
+#include "lcmtypes/run_course.h"
 #include "lcmtypes/validate.h"
 #include "planner/termination.h"
-#include "sensor/run_course.h"
 
 namespace nextview {
 namespace {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "lcmtypes/message_bounds.h"
 #include "lcmtypes/parameter_bounds.h"
 #include "lcmtypes/timing_message.h"
 #include "scene/scene_config.h"

@@ -8,9 +8,9 @@
 
 #include "lcmtypes/bus_process.h"
 #include "lcmtypes/real_time.h"
+#include "lcmtypes/run_course.h"
 #include "scene/scene.h"
 #include "sensor/range_image_message.h"
-#include "sensor/run_course.h"
 #include "sensor/sensor_geometry.h"
 
 namespace nextview {

@@ -10,6 +10,7 @@
 #include <sstream>
 
 #include "lcmtypes/bus.h"
+#include "logger/run_log.h"
 #include "tests/system/program.h"
 
 namespace nextview {
@@ -157,13 +158,25 @@ TEST_F(LongRun, NamesAReasonToStopThatItDoesNotKnow) {
   ASSERT_TRUE(std::regex_search(run_->output(), bus, std::regex("bus: (\\S+), run (\\d+)")))
       << run_->output();
   const std::string lcm_url = bus[1];
-  Bus stranger(lcm_url, std::stoll(bus[2]), "stranger");
+  const std::int64_t number = std::stoll(bus[2]);
+  // An end counts between two views only, and of the views there are.
+  ::kill(run_->child("planner"), SIGSTOP);
+  RunLog log(folder_ / "run" / "run.lcmlog", number, RangeImages::OnlyCount);
+  int quiet = 0;
+  for (int views = 0; quiet < 40; ::poll(nullptr, 0, 5)) {
+    log.read_on();
+    const RunRecord& record = log.record();
+    const bool same = record.committed_views() == views && record.latest_view() == views;
+    quiet = same ? quiet + 1 : 0;
+    views = record.committed_views();
+  }
+  Bus other_planner(lcm_url, number, "planner");
   stop_t stop{};
-  stop.run = stranger.run_number();
-  stop.views = 3;
+  stop.run = number;
+  stop.views = log.record().committed_views();
   stop.stop_reason = "bored";
   stop.detail = "Nothing on.";
-  stranger.publish(stop);
+  other_planner.publish(stop);
   EXPECT_EQ(run_->wait(), 1) << run_->output();
   EXPECT_NE(run_->output().find("the reason \"bored\", which this version"), std::string::npos)
       << run_->output();

@@ -1,4 +1,4 @@
-#include "sensor/run_course.h"
+#include "lcmtypes/run_course.h"
 
 #include <fmt/format.h>
 
