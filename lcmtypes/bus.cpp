@@ -220,6 +220,9 @@ bool Bus::handle(std::chrono::milliseconds timeout) {
   for (const auto& [reason, count] : transport_->take_refused()) drop({}, reason, count);
   drop_lines_.tell_sum_when_due(DropLines::Clock::now());
   if (!early_.empty()) drop_stale();
+  for (const auto& wanted : wanted_.take_due()) {
+    request_channel(wanted.channel, wanted.view, wanted.attempt);
+  }
   return handled;
 }
 
@@ -256,6 +259,7 @@ void Bus::taken(std::string_view channel, const MessageKey& key,
   heard_.take(channel, key, bytes);
   ++counters_.delivered;
   note_come(channel, key);
+  wanted_.came(channel, key);
   if (!early_.wait_for(channel)) return;
   more_to_judge_ = true;
   if (!judging_again_) judge_again();
@@ -266,22 +270,20 @@ void Bus::keep_early(std::string_view channel, const MessageKey& key,
   const auto now = EarlyMessages::Clock::now();
   const bool kept = early.then() == TooEarly::Then::JudgeAgain;
   if (!kept) drop(channel, early.what());
+  want({std::string(early.channel()), early.view(), early.attempt()});
+  if (early.then() == TooEarly::Then::Forget) return;
   EarlyMessages::Message message{
       std::string(channel),         key,          {},
       std::string(early.channel()), early.what(), early_since_.value_or(now)};
   if (kept) message.bytes.assign(bytes.begin(), bytes.end());
   if (!early_.keep(std::move(message)) && kept) {
-    return drop(channel, std::string(early.what()) + ", and no more such messages can be kept");
+    drop(channel, std::string(early.what()) + ", and no more such messages can be kept");
   }
-  if (judging_again_) return;  // it has been asked for
-  // Once for all parts of an image; again when one of them comes again, or after a while.
-  constexpr std::chrono::milliseconds kLong{20};
-  const MessageKey wanted{early.view(), early.attempt(), 0};
-  const bool asked = asked_early_.wanted == wanted && asked_early_.for_whom != key &&
-                     now - asked_early_.when < kLong;
-  if (asked) return;
-  asked_early_ = {wanted, key, now};
-  request_channel(early.channel(), early.view(), early.attempt());
+}
+
+void Bus::want(const WantedMessages::Wanted& wanted) {
+  if (!wanted_.want(wanted, response_time_.timeout())) return;
+  request_channel(wanted.channel, wanted.view, wanted.attempt);
 }
 
 void Bus::judge_again() {
@@ -291,7 +293,7 @@ void Bus::judge_again() {
       for (const EarlyMessages::Message& message : early_.take_all()) {
         early_since_ = message.since;
         if (message.bytes.empty()) {
-          request_channel(message.channel, message.key.view, message.key.attempt);
+          want({message.channel, message.key.view, message.key.attempt});
           continue;
         }
         receivers_.find(message.channel)->second(message.bytes);

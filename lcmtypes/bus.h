@@ -22,6 +22,7 @@
 #include "lcmtypes/rejected_message.h"
 #include "lcmtypes/response_time.h"
 #include "lcmtypes/transport.h"
+#include "lcmtypes/wanted_messages.h"
 
 namespace nextview {
 
@@ -167,12 +168,6 @@ class Bus {
     Clock::time_point first;
     int times = 0;
   };
-  /// What was last asked for because of a message that came too early.
-  struct AskedEarly {
-    MessageKey wanted;
-    MessageKey for_whom;
-    Clock::time_point when;
-  };
   using Answers = std::map<MessageKey, Published>;
 
   template <class Message>
@@ -205,6 +200,8 @@ class Bus {
   void taken(std::string_view channel, const MessageKey& key, std::span<const std::uint8_t> bytes);
   void keep_early(std::string_view channel, const MessageKey& key,
                   std::span<const std::uint8_t> bytes, const TooEarly& early);
+  /// Asks for what has to come first, now and until it does.
+  void want(const WantedMessages::Wanted& wanted);
   void judge_again();
   void drop_stale();
   void take_channel(std::string_view channel);
@@ -228,7 +225,7 @@ class Bus {
   bool judging_again_ = false;
   bool more_to_judge_ = false;
   std::optional<EarlyMessages::Clock::time_point> early_since_;  // of the one judged again
-  AskedEarly asked_early_;
+  WantedMessages wanted_;
   DropLines drop_lines_;
 };
 

@@ -18,15 +18,18 @@ class RejectedMessage : public std::runtime_error {
 };
 
 /// Thrown by a handler that finds that what must have led to a message has not been heard. The bus
-/// asks for that. When it has come, the message is asked for, too: one said before anybody could
-/// have said it may not stand in the way of the true one. Or, if it is kept, judged then.
+/// asks for that until it comes. Then the message is asked for, too: one said before anybody could
+/// have said it may not stand in the way of the true one.
 class TooEarly : public std::runtime_error {
  public:
-  enum class Then { AskAnew, JudgeAgain };
+  /// What becomes of the message when what led to it has come.
+  enum class Then {
+    AskAnew,
+    JudgeAgain,  ///< kept until then: what is large, and can be held against what led to it
+    Forget,      ///< whoever threw asks for it, when he knows that he lacks it
+  };
   /// @param reason what has not been heard, in words
   /// @param channel on which it is asked for, with the view and the attempt (0: all there are)
-  /// @param then what is done with the message; kept is what is large, and can be held against
-  ///        what led to it
   TooEarly(const std::string& reason, std::string_view channel, int view, int attempt,
            Then then = Then::AskAnew)
       : std::runtime_error(reason),

@@ -18,16 +18,18 @@ const run_config_t& config_of(const RunRecord& heard) {
   return *heard.config();
 }
 
+/// Something has been said of a view though the one after the last that was committed has not been
+/// heard to have been: this listener is behind, or a stranger speaks. What it misses of views it
+/// knows to have begun it asks for itself.
+TooEarly ahead(int committed, const std::string& what) {
+  return {fmt::format("{} is ahead of the run, which has committed {}", what, committed),
+          Channel<goal_t>::name, committed + 1, 0, TooEarly::Then::Forget};
+}
+
 /// No view is begun before the one before it has been committed.
 void check_begun(int view, const RunRecord& heard) {
   const int committed = heard.committed_views();
-  if (view <= committed + 1) return;
-  if (view == committed + 2) {
-    throw TooEarly(fmt::format("view {} has not been committed", committed + 1),
-                   Channel<commit_t>::name, committed + 1, 0);
-  }
-  throw RejectedMessage(
-      fmt::format("view {} is far ahead of the run, which has committed {}", view, committed));
+  if (view > committed + 1) throw ahead(committed, fmt::format("view {}", view));
 }
 
 const goal_t& goal_of(int view, int attempt, const RunRecord& heard) {
@@ -99,11 +101,8 @@ void check_follows(const stop_t& stop, const RunRecord& heard) {
     throw RejectedMessage(stop.stop_reason + " is for the run itself to say");
   }
   const int committed = heard.committed_views();
-  if (stop.views == committed + 1) {
-    throw TooEarly(fmt::format("view {} has not been committed", stop.views),
-                   Channel<commit_t>::name, stop.views, 0);
-  }
-  if (stop.views != committed) {
+  if (stop.views > committed) throw ahead(committed, fmt::format("an end after {}", stop.views));
+  if (stop.views < committed) {
     throw RejectedMessage(fmt::format("nobody decided it: it is of {} views, and {} are committed",
                                       stop.views, committed));
   }

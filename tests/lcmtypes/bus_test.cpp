@@ -379,6 +379,7 @@ class Expectant {
   Expectant(Bus& bus, TooEarly::Then then) {
     bus.on<goal_t>([this](const goal_t& goal) { goals_.insert(key_of(goal)); });
     bus.on<arrival_t>([this, then](const arrival_t& arrival) {
+      heard_of_.insert(arrival.view);
       if (!goals_.contains(key_of(arrival))) {
         throw TooEarly("no goal asked for it", Channel<goal_t>::name, arrival.view, 0, then);
       }
@@ -387,9 +388,11 @@ class Expectant {
     });
   }
   const std::vector<double>& arrived() const { return arrived_; }
+  bool has_heard_of(int view) const { return heard_of_.contains(view); }
 
  private:
   std::set<MessageKey> goals_;
+  std::set<int> heard_of_;  // views, in arrivals that were taken or not
   std::vector<double> arrived_;
 };
 
@@ -491,6 +494,39 @@ TEST_F(LossyBusPair, LosesNothingForWhoeverAsksAgain) {
   EXPECT_GT(mapper_.counters().repeated, 0);
   EXPECT_GT(network_.lost(), kGoals / 2);
 }
+
+class TooEarlyOnALossyBus : public LossyBusPair,
+                            public testing::WithParamInterface<TooEarly::Then> {};
+
+// Nobody else asks: neither the planner for an answer nor the mapper for goals or arrivals.
+TEST_P(TooEarlyOnALossyBus, WhatLedToAMessageIsAskedForUntilItComes) {
+  constexpr int kViews = 20;
+  const Expectant expectant(mapper_, GetParam());
+  testing::internal::CaptureStderr();
+  goal_t goal = example<goal_t>();
+  arrival_t arrival = example<arrival_t>();
+  arrival.attempt = goal.attempt;
+  for (int view = 1; view <= kViews; ++view) {
+    goal.view = arrival.view = view;
+    planner_.publish(goal);
+    while (!expectant.has_heard_of(view)) {
+      planner_.publish(arrival);
+      settle();
+    }
+  }
+  const auto deadline = std::chrono::steady_clock::now() + WantedMessages::kLongest;
+  while (expectant.arrived().size() < kViews && std::chrono::steady_clock::now() < deadline) {
+    settle();
+  }
+  testing::internal::GetCapturedStderr();
+  EXPECT_EQ(expectant.arrived().size(), kViews);
+}
+
+INSTANTIATE_TEST_SUITE_P(With, TooEarlyOnALossyBus,
+                         testing::Values(TooEarly::Then::AskAnew, TooEarly::Then::JudgeAgain),
+                         [](const auto& then) {
+                           return then.param == TooEarly::Then::AskAnew ? "AskAnew" : "JudgeAgain";
+                         });
 
 }  // namespace
 }  // namespace nextview
