@@ -23,6 +23,7 @@ void check_room_for(const std::string& role, std::size_t known) {
 
 void HeardRun::listen(Bus& bus) {
   const auto add = [this](const auto& message) {
+    note_view(message);
     check_follows(message, record);
     take(message);
   };

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <functional>
 #include <map>
@@ -27,6 +28,11 @@ struct HeardRun {
   std::optional<Clock::time_point> first_goal;
   std::optional<Clock::time_point> last_commit;
 
+  /// The latest view that anything was said of, be it taken or refused; at most the run's last.
+  int spoken_of = 0;
+  /// Whether a view is over for the others that has not been heard to the end here.
+  bool is_behind() const { return spoken_of > record.committed_views() + 1; }
+
   HeardPace pace;
   bool ending = false;  ///< this process ends the run itself: no other end counts
 
@@ -47,6 +53,14 @@ struct HeardRun {
       if (!first_goal) first_goal = last_progress;
     }
     if constexpr (std::is_same_v<Message, commit_t>) last_commit = last_progress;
+  }
+
+ private:
+  template <class Message>
+  void note_view(const Message& message) {
+    if (!record.config()) return;
+    const int view = key_of(message).view;
+    if (view <= record.config()->planner.max_views) spoken_of = std::max(spoken_of, view);
   }
 };
 

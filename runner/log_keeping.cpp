@@ -60,6 +60,17 @@ bool LogKeeping::take_from_log(const MissingMessage& missing, HeardRun& heard) {
   return true;
 }
 
+bool LogKeeping::take_view_from_log(int view, HeardRun& heard) {
+  if (!answers_ || !answers_->has(view)) return false;
+  const std::int64_t run = heard.record.config()->run;
+  for (const std::string_view channel :
+       {Channel<goal_t>::name, Channel<search_t>::name, Channel<arrival_t>::name,
+        Channel<range_image_t>::name, Channel<commit_t>::name}) {
+    answers_->tell(channel, view, 0, run, [&heard](const auto& message) { heard.take(message); });
+  }
+  return true;
+}
+
 bool LogKeeping::answer(Bus& bus, const request_t& request) {
   if (!answers_ || !answers_->has(request.view)) return false;
   answers_->answer(bus, request);

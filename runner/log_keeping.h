@@ -21,6 +21,9 @@ class LogKeeping {
   /// Has what was missed here, and is of a view that this answers for, come out of the log; false
   /// when it is of another.
   bool take_from_log(const MissingMessage& missing, HeardRun& heard);
+  /// Has all of a view that this answers for come out of the log, of whose messages none has come
+  /// here; false when it is another.
+  bool take_view_from_log(int view, HeardRun& heard);
   /// Answers a request for a view that it answers for; false for another.
   bool answer(Bus& bus, const request_t& request);
 

@@ -48,6 +48,9 @@ bool all_of(const std::set<std::string>& roles, const std::set<std::string>& hea
 /// How long something must be missing before it is asked for, where nobody waits for it to go on.
 constexpr milliseconds kLeastMissed{50};
 
+/// Likewise while the others have gone on to views of which this process has not heard.
+constexpr milliseconds kLeastBehind{10};
+
 /// Within this time the recorder writes the next message, if it has one to write.
 constexpr milliseconds kLeastWritten{20};
 
@@ -234,14 +237,17 @@ void RunSupervisor::watch() {
   // Most often nothing is lost and somebody works: then less and less often.
   AskTimer reminder = reminder_after(kLeastMissed);
   const RunRecord& record = heard_.record;
+  bool behind = false;
   while (!record.stop() || !record.missing().empty()) {
-    pump(milliseconds(20));
+    pump(behind ? kLeastBehind : milliseconds(20));
     replacements_.mend(*log_, *bus_, heard_);
     log_keeping_.step(*log_, *bus_, heard_);
     make_rows();
+    if (!std::exchange(behind, heard_.is_behind()) && behind) reminder.restart(kLeastBehind);
     if (!reminder.due() || !take_all_there_is()) continue;
     if (ask_for_missed()) {
-      reminder.restart(std::max(kLeastMissed, 2 * bus_->response_time().timeout()));
+      reminder.restart(behind ? kLeastBehind
+                              : std::max(kLeastMissed, 2 * bus_->response_time().timeout()));
     }
   }
   make_rows();
@@ -258,12 +264,20 @@ bool RunSupervisor::take_all_there_is() {
 
 /// @return whether something has come since
 bool RunSupervisor::ask_for_missed() {
-  // What was missing when it was looked before, too: what only this listener has missed nobody else
-  // makes good.
+  // Of a view that is in the log nobody else keeps anything, and nobody here may know of it.
+  while (heard_.is_behind()) {
+    const int view = heard_.record.committed_views() + 1;
+    if (heard_.record.latest_view() >= view || !log_keeping_.take_view_from_log(view, heard_)) {
+      break;
+    }
+    make_rows();
+  }
+  // What was missing when it was looked before, too, unless all others have it for certain: what
+  // only this listener has missed nobody else makes good.
   std::set<MissingMessage> missed;
   for (const MissingMessage& missing : heard_.record.missing()) {
     if (log_keeping_.take_from_log(missing, heard_)) continue;
-    if (missed_.contains(missing)) request(*bus_, missing, heard_.record);
+    if (missed_.contains(missing) || heard_.is_behind()) request(*bus_, missing, heard_.record);
     missed.insert(missing);
   }
   const bool come = !std::includes(missed.begin(), missed.end(), missed_.begin(), missed_.end());
