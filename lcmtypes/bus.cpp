@@ -270,7 +270,7 @@ void Bus::keep_early(std::string_view channel, const MessageKey& key,
   const auto now = EarlyMessages::Clock::now();
   const bool kept = early.then() == TooEarly::Then::JudgeAgain;
   if (!kept) drop(channel, early.what());
-  want({std::string(early.channel()), early.view(), early.attempt()});
+  want({std::string(early.channel()), early.view(), early.attempt()}, key);
   if (early.then() == TooEarly::Then::Forget) return;
   EarlyMessages::Message message{
       std::string(channel),         key,          {},
@@ -281,8 +281,8 @@ void Bus::keep_early(std::string_view channel, const MessageKey& key,
   }
 }
 
-void Bus::want(const WantedMessages::Wanted& wanted) {
-  if (!wanted_.want(wanted, response_time_.timeout())) return;
+void Bus::want(const WantedMessages::Wanted& wanted, const MessageKey& for_whom) {
+  if (!wanted_.want(wanted, for_whom, response_time_.timeout())) return;
   request_channel(wanted.channel, wanted.view, wanted.attempt);
 }
 
@@ -293,7 +293,7 @@ void Bus::judge_again() {
       for (const EarlyMessages::Message& message : early_.take_all()) {
         early_since_ = message.since;
         if (message.bytes.empty()) {
-          want({message.channel, message.key.view, message.key.attempt});
+          want({message.channel, message.key.view, message.key.attempt}, message.key);
           continue;
         }
         receivers_.find(message.channel)->second(message.bytes);

@@ -201,7 +201,7 @@ class Bus {
   void keep_early(std::string_view channel, const MessageKey& key,
                   std::span<const std::uint8_t> bytes, const TooEarly& early);
   /// Asks for what has to come first, now and until it does.
-  void want(const WantedMessages::Wanted& wanted);
+  void want(const WantedMessages::Wanted& wanted, const MessageKey& for_whom);
   void judge_again();
   void drop_stale();
   void take_channel(std::string_view channel);

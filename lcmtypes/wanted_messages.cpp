@@ -4,11 +4,13 @@
 
 namespace nextview {
 
-bool WantedMessages::want(const Wanted& wanted, std::chrono::milliseconds answer_time) {
+bool WantedMessages::want(const Wanted& wanted, const MessageKey& for_whom,
+                          std::chrono::milliseconds answer_time) {
   constexpr std::chrono::milliseconds kLongestWait{500};
-  if (std::ranges::find(asked_, wanted, &Asked::wanted) != asked_.end()) return false;
+  const auto asked = std::ranges::find(asked_, wanted, &Asked::wanted);
+  if (asked != asked_.end()) return asked->for_whom == for_whom;
   if (asked_.size() < kMost) {
-    asked_.push_back({wanted, AskTimer(answer_time, kLongestWait), Clock::now()});
+    asked_.push_back({wanted, for_whom, AskTimer(answer_time, kLongestWait), Clock::now()});
   }
   return true;
 }

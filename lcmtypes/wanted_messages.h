@@ -29,9 +29,12 @@ class WantedMessages {
   };
 
   /// Notes that a message is wanted.
+  /// @param for_whom the message that cannot be judged before
   /// @param answer_time how long answers take
-  /// @return whether to ask for it now: it is not being asked for already
-  bool want(const Wanted& wanted, std::chrono::milliseconds answer_time);
+  /// @return whether to ask for it now: it is not being asked for already, or that message has come
+  ///         once more, so that somebody waits for this one
+  bool want(const Wanted& wanted, const MessageKey& for_whom,
+            std::chrono::milliseconds answer_time);
   /// One has come.
   void came(std::string_view channel, const MessageKey& key);
   /// Those to be asked for again now.
@@ -41,6 +44,7 @@ class WantedMessages {
  private:
   struct Asked {
     Wanted wanted;
+    MessageKey for_whom;
     AskTimer timer;
     Clock::time_point since;
   };

@@ -6,6 +6,7 @@
 #include <iterator>
 #include <utility>
 
+#include "lcmtypes/run_course.h"
 #include "planner/termination.h"
 
 namespace nextview {
@@ -67,6 +68,7 @@ void RunRecord::add(const stop_t& stop) {
 
 void RunRecord::add(const range_image_t& part) {
   check_fits(part.view, part.attempt);
+  check_raster(part, *config_);
   const MessageKey key{part.view, part.attempt, 0};
   if (whole_images_.contains(key)) return;
   auto image = assembler_.add(part);

@@ -15,13 +15,29 @@ Message keyed(int view, int attempt) {
   return message;
 }
 
+std::vector<range_image_t> any_image(int view = 1, int attempt = 1) {
+  RangeImage image;
+  image.rays = make_ray_table(TiltedLineScan::with_aperture(200, 100, 1.0));
+  image.range_m.assign(image.rays.pixels(), 2.0F);
+  image.position_m = {1.0, 1.0, 1.0};
+  image.pose.position_m = image.position_m;
+  return range_image_messages(image, view, attempt, 0);
+}
+
 }  // namespace
 
 run_config_t config_message() {
-  auto config = example<run_config_t>();
-  config.planner.max_views = 9;
-  config.planner.max_attempts = 3;
-  return config;
+  static const run_config_t message = [] {
+    auto config = example<run_config_t>();
+    config.planner.max_views = 9;
+    config.planner.max_attempts = 3;
+    const range_image_t part = any_image().front();
+    config.sensor.geometry = part.geometry;
+    config.sensor.columns = part.columns;
+    config.sensor.rows = part.rows;
+    return config;
+  }();
+  return message;
 }
 
 goal_t goal_of(int view, int attempt) { return keyed<goal_t>(view, attempt); }
@@ -35,12 +51,7 @@ arrival_t arrival_of(int view, int attempt, bool arrived) {
 }
 
 std::vector<range_image_t> image_of(int view, int attempt) {
-  RangeImage image;
-  image.rays = make_ray_table(TiltedLineScan::with_aperture(200, 100, 1.0));
-  image.range_m.assign(image.rays.pixels(), 2.0F);
-  image.position_m = {1.0, 1.0, 1.0};
-  image.pose.position_m = image.position_m;
-  auto parts = range_image_messages(image, view, attempt, 0);
+  auto parts = any_image(view, attempt);
   for (range_image_t& part : parts) part.run = config_message().run;
   return parts;
 }
