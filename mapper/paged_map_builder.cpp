@@ -249,7 +249,7 @@ std::size_t PagedMapBuilder::blocks_aside() const { return state_->store.blocks_
 std::size_t PagedMapBuilder::memory_bytes() const {
   const State& s = *state_;
   return sizeof(State) + s.store.memory_bytes() + s.quality.memory_bytes() +
-         s.ray_ends.memory_bytes() + s.changed.capacity() * sizeof(OpenBlock*);
+         s.ray_ends.memory_bytes() + s.changed.capacity() * sizeof(s.changed.front());
 }
 
 }  // namespace nextview
