@@ -24,6 +24,7 @@ constexpr std::chrono::milliseconds kWait(100);
 goal_t goal_of_bytes(std::size_t bytes) {
   goal_t goal{};
   goal.view = 1;
+  goal.strategy = "bench";
   while (static_cast<std::size_t>(goal.getEncodedSize()) < bytes) {
     goal.waypoint_m.push_back({1.0, 2.0, 3.0});
     ++goal.waypoints;

@@ -45,7 +45,7 @@ std::string why_unreachable(const Server& server) {
   const int socket = ::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0);
   const bool connected =
       socket >= 0 && ::connect(socket, address->ai_addr, address->ai_addrlen) == 0;
-  const std::string why = connected ? "" : std::strerror(errno);
+  std::string why = connected ? "" : std::strerror(errno);
   if (socket >= 0) ::close(socket);
   return why;
 }

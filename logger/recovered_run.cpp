@@ -34,6 +34,7 @@ std::vector<std::filesystem::path> parts_of(const std::filesystem::path& log) {
     rotated &= *number > 9 || entry.path().extension().string().size() == 2;
   }
   std::vector<std::filesystem::path> files;
+  files.reserve(parts.size());
   for (const auto& [number, file] : parts) files.push_back(file);
   if (rotated) std::reverse(files.begin(), files.end());
   return files;

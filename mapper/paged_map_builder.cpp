@@ -102,7 +102,8 @@ struct PagedMapBuilder::State {
   QualityCensus quality;
   RayEnds ray_ends;
   std::int64_t newly_occupied = 0;
-  std::vector<OpenBlock*> changed;  // by the fold under way
+  using Changed = std::vector<OpenBlock*>;
+  Changed changed;  // by the fold under way
 };
 
 PagedMapBuilder::PagedMapBuilder(const VoxelGrid& grid, const MapWindow& extent,
@@ -249,7 +250,7 @@ std::size_t PagedMapBuilder::blocks_aside() const { return state_->store.blocks_
 std::size_t PagedMapBuilder::memory_bytes() const {
   const State& s = *state_;
   return sizeof(State) + s.store.memory_bytes() + s.quality.memory_bytes() +
-         s.ray_ends.memory_bytes() + s.changed.capacity() * sizeof(OpenBlock*);
+         s.ray_ends.memory_bytes() + s.changed.capacity() * sizeof(State::Changed::value_type);
 }
 
 }  // namespace nextview
