@@ -64,6 +64,11 @@ class ShortestPaths {
     return waypoints_m(space_->grid().voxel_of(position_m), position_m);
   }
 
+  /// Of what is kept for each cell.
+  std::size_t memory_bytes() const {
+    return lengths_.memory_bytes() + arrived_.memory_bytes() + passage_.memory_bytes();
+  }
+
  private:
   using Cell = ClearSpace::Cell;
   // How a cell may be passed.
