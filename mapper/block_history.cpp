@@ -2,7 +2,7 @@
 
 namespace nextview {
 
-BlockHistory::BlockHistory(const VoxelMap& map) : blocks_(map), changed_in_(blocks_.size(), 0) {}
+BlockHistory::BlockHistory(const VoxelMap& map) : blocks_(map), changed_in_(blocks_.size()) {}
 
 void BlockHistory::view_folded(int view, const FoldReport& report) {
   for (const auto* slots : {&report.changed_slots, &report.updated_surfaces}) {

@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "mapper/lazy_array.h"
 #include "mapper/map_blocks.h"
 #include "mapper/map_builder.h"
 
@@ -27,7 +28,7 @@ class BlockHistory {
 
  private:
   MapBlocks blocks_;
-  std::vector<std::int32_t> changed_in_;   // by block: the view; 0: never
+  LazyArray<std::int32_t> changed_in_;     // by block: the view; 0: never
   std::vector<std::uint32_t> of_changes_;  // room for blocks_of
 };
 

@@ -12,15 +12,27 @@ VoxelIndex block_of(const VoxelIndex& voxel) { return voxel.unaryExpr(&block_of_
 
 int wrapped(int index, int count) { return (index % count + count) % count; }
 
+MapWindow of_block() { return {VoxelIndex::Zero(), VoxelIndex::Constant(kBlockSide)}; }
+
 // The labels as bytes, x fastest.
 LabelBytes bytes_of(const OpenBlock& block) {
   LabelBytes bytes;
   std::size_t entry = 0;
-  for_each_voxel({VoxelIndex::Zero(), VoxelIndex::Constant(kBlockSide)},
-                 [&](const VoxelIndex& offset) {
-                   bytes[entry++] = static_cast<std::uint8_t>(label_in(block, offset));
-                 });
+  for_each_voxel(of_block(), [&](const VoxelIndex& offset) {
+    bytes[entry++] = static_cast<std::uint8_t>(label_in(block, offset));
+  });
   return bytes;
+}
+
+BlockContent content_of(const OpenBlock& block, const std::vector<SurfaceVoxel>& surfaces) {
+  BlockContent content{bytes_of(block), {}};
+  content.surfaces.reserve(surfaces.size());
+  for_each_voxel(of_block(), [&](const VoxelIndex& offset) {
+    const VoxelBit at(offset);
+    if (!at.is_in(block.labels.occupied)) return;
+    content.surfaces.push_back(surfaces[at.rank_in(block.labels.occupied)]);
+  });
+  return content;
 }
 
 void hash_if_stale(OpenBlock& block) {
@@ -91,7 +103,8 @@ void BlockStore::follow(const VoxelIndex& voxel) {
 
 BlockStore::AsideBlock BlockStore::packed(OpenBlock& block) {
   hash_if_stale(block);
-  AsideBlock aside{PackedBlock(block.labels), std::move(block.surfaces), block.counts, block.hash};
+  AsideBlock aside{PackedBlock(block.labels), std::move(block.surfaces), block.counts, block.hash,
+                   block.changed_in};
   aside.surfaces.shrink_to_fit();
   return aside;
 }
@@ -101,6 +114,7 @@ void BlockStore::unpack(const AsideBlock& aside, OpenBlock& block) {
   block.counted_empty = block.labels.empty;
   block.counts = aside.counts;
   block.hash = aside.hash;
+  block.changed_in = aside.changed_in;
   block.is_marked = true;
 }
 
@@ -175,18 +189,50 @@ const SurfaceVoxel* BlockStore::surface(const VoxelIndex& voxel) const {
   return find(aside->second.labels.labels().occupied, aside->second.surfaces);
 }
 
-void BlockStore::hash(HashOfBlocks& whole) {
+BlockContent BlockStore::content(const VoxelIndex& coordinate) const {
+  if (open_.contains(coordinate)) {
+    const OpenBlock& block = window_[place(coordinate)];
+    return content_of(block, block.surfaces);
+  }
+  const auto aside = aside_.find(key(coordinate));
+  if (aside == aside_.end()) return {};
+  OpenBlock block;
+  unpack(aside->second, block);
+  return content_of(block, aside->second.surfaces);
+}
+
+template <class OfOpen, class OfAside>
+void BlockStore::for_each_marked(OfOpen of_open, OfAside of_aside) const {
   auto aside = aside_.begin();
   for_each_voxel(open_, [&](const VoxelIndex& coordinate) {
-    OpenBlock& block = window_[place(coordinate)];
+    const OpenBlock& block = window_[place(coordinate)];
     if (!block.is_marked) return;
-    hash_if_stale(block);
     for (; aside != aside_.end() && aside->first < key(coordinate); ++aside) {
-      whole.add(aside->second.hash);
+      of_aside(aside->first, aside->second);
     }
-    whole.add(block.hash);
+    of_open(block);
   });
-  for (; aside != aside_.end(); ++aside) whole.add(aside->second.hash);
+  for (; aside != aside_.end(); ++aside) of_aside(aside->first, aside->second);
+}
+
+std::vector<VoxelIndex> BlockStore::changed_after(int changed_in) const {
+  std::vector<VoxelIndex> changed;
+  for_each_marked(
+      [&](const OpenBlock& block) {
+        if (block.changed_in > changed_in) changed.push_back(block.coordinate);
+      },
+      [&](const Key& key, const AsideBlock& block) {
+        if (block.changed_in > changed_in) changed.emplace_back(key[2], key[1], key[0]);
+      });
+  return changed;
+}
+
+void BlockStore::hash(HashOfBlocks& whole) {
+  for (OpenBlock& block : window_) {
+    if (block.is_marked) hash_if_stale(block);
+  }
+  for_each_marked([&](const OpenBlock& block) { whole.add(block.hash); },
+                  [&](const Key&, const AsideBlock& block) { whole.add(block.hash); });
 }
 
 std::size_t BlockStore::memory_bytes() const {

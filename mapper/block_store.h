@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "mapper/block_bits.h"
+#include "mapper/block_content.h"
 #include "mapper/block_counts.h"
 #include "mapper/block_hash.h"
 #include "mapper/key_numbers.h"
@@ -38,6 +39,7 @@ struct OpenBlock {
   BlockCounts counts;         ///< as last counted
   BlockBits counted_empty{};  ///< what was Empty then
   BlockHash hash{};           ///< of the content, unless stale
+  int changed_in = 0;         ///< for whoever counts the changes: the last; 0: never
   bool is_marked = false;     ///< not all Unmarked
   bool is_stale = false;      ///< changed since it was hashed
   bool is_noted = false;      ///< for whoever works on it
@@ -76,6 +78,13 @@ class BlockStore {
   Label label(const VoxelIndex& voxel) const;
   const SurfaceVoxel* surface(const VoxelIndex& voxel) const;
 
+  /// All there is in a block, wherever it lies.
+  BlockContent content(const VoxelIndex& coordinate) const;
+
+  /// Coordinates of the blocks whose changed_in is larger than this, in their order, x fastest.
+  /// Nothing may be open elsewhere.
+  std::vector<VoxelIndex> changed_after(int changed_in) const;
+
   /// The hashes of all blocks that are not all Unmarked, those of the window and those aside, in
   /// the order of their coordinates, x fastest. Nothing may be open elsewhere.
   void hash(HashOfBlocks& whole);
@@ -89,12 +98,17 @@ class BlockStore {
     std::vector<SurfaceVoxel> surfaces;
     BlockCounts counts;
     BlockHash hash;
+    int changed_in;
   };
   using Key = std::array<int, 3>;  // z, y, x
   static Key key(const VoxelIndex& coordinate) {
     return {coordinate[2], coordinate[1], coordinate[0]};
   }
 
+  // Calls of_open(block) or of_aside(key, block) for all blocks that are not all Unmarked, in the
+  // order of their coordinates.
+  template <class OfOpen, class OfAside>
+  void for_each_marked(OfOpen of_open, OfAside of_aside) const;
   std::size_t place(const VoxelIndex& coordinate) const;
   void leave(OpenBlock& block);
   void enter(const VoxelIndex& coordinate);

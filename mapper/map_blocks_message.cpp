@@ -24,34 +24,43 @@ struct Block {
   std::size_t bytes() const { return kBlockBytes + kSurfaceBytes * qualities.size(); }
 };
 
-Block block_of(const VoxelMap& map, const VoxelIndex& index) {
+Block block_of(const VoxelIndex& index, const BlockContent& content) {
   Block block;
   block.index.assign(index.data(), index.data() + 3);
-  block.labels.reserve(kLabelsBytes);
-  const MapWindow box{kBlockSide * index, VoxelIndex::Constant(kBlockSide)};
-  for_each_voxel(box, [&](const VoxelIndex& voxel) {
-    const Label label = map.label(voxel);
-    block.labels.push_back(static_cast<std::uint8_t>(label));
-    if (label != Label::Occupied) return;
-    const SurfaceVoxel* const surface = map.surface(voxel);
-    const SurfaceVoxel known = surface == nullptr ? SurfaceVoxel{} : *surface;
-    const Eigen::Vector3f normal = known.mean_normal().cast<float>();
+  block.labels.assign(content.labels.begin(), content.labels.end());
+  for (const SurfaceVoxel& surface : content.surfaces) {
+    const Eigen::Vector3f normal = surface.mean_normal().cast<float>();
     block.normals.emplace_back(normal.data(), normal.data() + 3);
-    block.qualities.push_back(static_cast<float>(known.quality_01()));
-  });
+    block.qualities.push_back(static_cast<float>(surface.quality_01()));
+  }
   return block;
 }
 
-map_blocks_t empty_part(const VoxelMap& map, int view, int since_view, std::int64_t utime) {
+BlockContent content_of(const VoxelMap& map, const VoxelIndex& index) {
+  BlockContent content;
+  std::size_t entry = 0;
+  const MapWindow box{kBlockSide * index, VoxelIndex::Constant(kBlockSide)};
+  for_each_voxel(box, [&](const VoxelIndex& voxel) {
+    const Label label = map.label(voxel);
+    content.labels[entry++] = static_cast<std::uint8_t>(label);
+    if (label != Label::Occupied) return;
+    const SurfaceVoxel* const surface = map.surface(voxel);
+    content.surfaces.push_back(surface == nullptr ? SurfaceVoxel{} : *surface);
+  });
+  return content;
+}
+
+map_blocks_t empty_part(const VoxelGrid& grid, const MapWindow& window, int view, int since_view,
+                        std::int64_t utime) {
   map_blocks_t part{};
   part.utime = utime;
   part.view = view;
   part.since_view = since_view;
-  part.voxel_size_m = map.grid().voxel_size_m;
+  part.voxel_size_m = grid.voxel_size_m;
   for (int axis = 0; axis < 3; ++axis) {
-    part.map_origin_m[axis] = map.grid().origin_m[axis];
-    part.window_min[axis] = map.window().min[axis];
-    part.window_size[axis] = map.window().size[axis];
+    part.map_origin_m[axis] = grid.origin_m[axis];
+    part.window_min[axis] = window.min[axis];
+    part.window_size[axis] = window.size[axis];
   }
   return part;
 }
@@ -65,15 +74,14 @@ void append(map_blocks_t& part, Block block) {
   std::ranges::move(block.qualities, std::back_inserter(part.surface_quality));
 }
 
-}  // namespace
-
-std::vector<map_blocks_t> map_blocks_messages(const VoxelMap& map, const BlockHistory& history,
-                                              int view, int since_view, std::int64_t utime) {
-  const map_blocks_t empty = empty_part(map, view, since_view, utime);
+// @param content_at (coordinate of a block) -> BlockContent
+template <class ContentAt>
+std::vector<map_blocks_t> parts_of(const map_blocks_t& empty,
+                                   const std::vector<VoxelIndex>& changed, ContentAt content_at) {
   std::vector<map_blocks_t> parts = {empty};
   std::size_t bytes = 0;
-  for (const std::uint32_t number : history.changed_since(since_view)) {
-    Block block = block_of(map, history.blocks().coordinate(number));
+  for (const VoxelIndex& index : changed) {
+    Block block = block_of(index, content_at(index));
     if (bytes + block.bytes() > kPartBytes) {
       parts.push_back(empty);
       bytes = 0;
@@ -86,6 +94,25 @@ std::vector<map_blocks_t> map_blocks_messages(const VoxelMap& map, const BlockHi
     parts[part].parts = static_cast<std::int32_t>(parts.size());
   }
   return parts;
+}
+
+}  // namespace
+
+std::vector<map_blocks_t> map_blocks_messages(const VoxelMap& map, const BlockHistory& history,
+                                              int view, int since_view, std::int64_t utime) {
+  std::vector<VoxelIndex> changed;
+  for (const std::uint32_t number : history.changed_since(since_view)) {
+    changed.push_back(history.blocks().coordinate(number));
+  }
+  return parts_of(empty_part(map.grid(), map.window(), view, since_view, utime), changed,
+                  [&](const VoxelIndex& index) { return content_of(map, index); });
+}
+
+std::vector<map_blocks_t> map_blocks_messages(const PagedMapBuilder& builder, int view,
+                                              int since_view, std::int64_t utime) {
+  return parts_of(empty_part(builder.grid(), builder.extent(), view, since_view, utime),
+                  builder.changed_since(since_view),
+                  [&](const VoxelIndex& index) { return builder.block(index); });
 }
 
 }  // namespace nextview

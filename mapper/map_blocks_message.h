@@ -6,6 +6,7 @@
 
 #include "lcmtypes/channels.h"
 #include "mapper/block_history.h"
+#include "mapper/paged_map_builder.h"
 
 namespace nextview {
 
@@ -16,5 +17,9 @@ namespace nextview {
 /// @param utime simulated, of the view
 std::vector<map_blocks_t> map_blocks_messages(const VoxelMap& map, const BlockHistory& history,
                                               int view, int since_view, std::int64_t utime);
+/// The same of a map of which only a window lies open, and the same messages to the last bit. Its
+/// folds are the views, from 1.
+std::vector<map_blocks_t> map_blocks_messages(const PagedMapBuilder& builder, int view,
+                                              int since_view, std::int64_t utime);
 
 }  // namespace nextview

@@ -52,7 +52,7 @@ MapCensus::MapCensus(const VoxelMap& map, const MapBlocks& blocks)
     : counts_(blocks.size()),
       empty_(std::size_t{blocks.size()} + 1),
       hidden_(blocks.size()),
-      listed_(blocks.size(), 0),
+      listed_(blocks.size()),
       totals_(map.window()) {}
 
 void MapCensus::note_changes(const MapBlocks& blocks, std::span<const std::uint32_t> slots) {
@@ -148,8 +148,8 @@ BlockCounts MapCensus::derive(VoxelMap& map, const MapBlocks& blocks, LookedAt& 
 }
 
 std::size_t MapCensus::memory_bytes() const {
-  return counts_.capacity() * sizeof(BlockCounts) +
-         (empty_.capacity() + hidden_.capacity()) * sizeof(BlockBits) + listed_.capacity() +
+  return counts_.memory_bytes() + empty_.memory_bytes() + hidden_.memory_bytes() +
+         listed_.memory_bytes() +
          (to_look_.capacity() + looked_.capacity()) * sizeof(std::uint32_t) +
          labels_.capacity() * sizeof(LookedAt);
 }

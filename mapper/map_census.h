@@ -7,6 +7,7 @@
 
 #include "mapper/block_bits.h"
 #include "mapper/block_counts.h"
+#include "mapper/lazy_array.h"
 #include "mapper/map_blocks.h"
 #include "mapper/voxel_map.h"
 
@@ -57,10 +58,10 @@ class MapCensus {
   BlockCounts derive(VoxelMap& map, const MapBlocks& blocks, LookedAt& at,
                      std::vector<std::uint32_t>& changed_slots) const;
 
-  std::vector<BlockCounts> counts_;   ///< by block
-  std::vector<BlockBits> empty_;      ///< by block
-  std::vector<BlockBits> hidden_;     ///< by block; a label of these changes here alone
-  std::vector<std::uint8_t> listed_;  ///< by block: whether in to_look_
+  LazyArray<BlockCounts> counts_;   ///< by block
+  LazyArray<BlockBits> empty_;      ///< by block
+  LazyArray<BlockBits> hidden_;     ///< by block; a label of these changes here alone
+  LazyArray<std::uint8_t> listed_;  ///< by block: whether in to_look_
   std::vector<std::uint32_t> to_look_;
   std::vector<std::uint32_t> looked_;
   std::vector<LookedAt> labels_;  ///< of the blocks in to_look_

@@ -29,7 +29,7 @@ LabelBytes labels_of(const VoxelMap& map, const MapBlocks& blocks, std::uint32_t
 }  // namespace
 
 MapDigest::MapDigest(const MapBlocks& blocks)
-    : hashes_(blocks.size()), present_(blocks.size(), 0), stale_(blocks.size(), 0) {}
+    : hashes_(blocks.size()), present_(blocks.size()), stale_(blocks.size()) {}
 
 std::string MapDigest::digest(const VoxelMap& map, const MapBlocks& blocks) {
   // Blocks next to each other along x share cache lines.
@@ -57,7 +57,7 @@ std::string MapDigest::digest(const VoxelMap& map, const MapBlocks& blocks) {
 }
 
 std::size_t MapDigest::memory_bytes() const {
-  return hashes_.capacity() * sizeof(BlockHash) + present_.capacity() + stale_.capacity() +
+  return hashes_.memory_bytes() + present_.memory_bytes() + stale_.memory_bytes() +
          to_hash_.capacity() * sizeof(to_hash_[0]);
 }
 

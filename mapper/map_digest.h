@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "mapper/block_hash.h"
+#include "mapper/lazy_array.h"
 #include "mapper/map_blocks.h"
 #include "mapper/voxel_map.h"
 
@@ -34,9 +35,9 @@ class MapDigest {
   std::size_t memory_bytes() const;
 
  private:
-  std::vector<BlockHash> hashes_;      ///< by block; meaningless where absent
-  std::vector<std::uint8_t> present_;  ///< by block: not all Unmarked
-  std::vector<std::uint8_t> stale_;    ///< by block: is in to_hash_
+  LazyArray<BlockHash> hashes_;      ///< by block; meaningless where absent
+  LazyArray<std::uint8_t> present_;  ///< by block: not all Unmarked
+  LazyArray<std::uint8_t> stale_;    ///< by block: is in to_hash_
   std::vector<std::uint32_t> to_hash_;
 };
 

@@ -1,7 +1,6 @@
 #include "mapper/mapper_process.h"
 
 #include <algorithm>
-#include <iostream>
 #include <iterator>
 #include <utility>
 
@@ -97,9 +96,11 @@ bool MapperProcess::publish_blocks() {
     const int view = next_view_ - 1;
     const int since = std::min(*blocks_wanted_.begin(), view);
     blocks_wanted_.erase(blocks_wanted_.begin());
-    std::ranges::move(
-        map_blocks_messages(std::get<MapBuilder>(builder_).map(), *history_, view, since, utime_),
-        std::back_inserter(blocks_));
+    const auto* const paged = std::get_if<PagedMapBuilder>(&builder_);
+    std::ranges::move(paged != nullptr ? map_blocks_messages(*paged, view, since, utime_)
+                                       : map_blocks_messages(std::get<MapBuilder>(builder_).map(),
+                                                             *history_, view, since, utime_),
+                      std::back_inserter(blocks_));
   }
   bus_.publish(std::move(blocks_.front()));
   blocks_.pop_front();
@@ -121,13 +122,8 @@ void MapperProcess::on_missing(const request_t& request) {
     request_range_image(bus_, assembler_, request.view, request.attempt);
   }
   // Whoever asks again before the answer begins gets one.
-  if (request.wanted_channel != Channel<map_blocks_t>::name) return;
-  if (history_) {
+  if (request.wanted_channel == Channel<map_blocks_t>::name) {
     blocks_wanted_.insert(std::min(request.view, next_view_ - 1));
-  } else if (!refusal_said_) {
-    refusal_said_ = true;
-    std::cerr << Channel<map_blocks_t>::name
-              << " is asked for, which a mapper with --window does not send: run it without\n";
   }
 }
 

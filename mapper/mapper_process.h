@@ -19,7 +19,7 @@ namespace nextview {
 
 /// The mapper on the bus: folds every view's range image into the map, in view order, and says with
 /// a commit what the map is then. Whoever asks gets the blocks of the map that have changed since a
-/// view, when there is nothing to fold and the map lies in one buffer.
+/// view, when there is nothing to fold.
 class MapperProcess : public BusProcess {
  public:
   /// @param window voxels that are to lie open in memory (PagedMapBuilder); without it, or where it
@@ -54,10 +54,9 @@ class MapperProcess : public BusProcess {
   int asked_for_view_ = 0;               // the latest view whose commit somebody waits for
   std::string history_digest_;           // of the last commit
   std::optional<BlockHistory> history_;  // of a map in one buffer
-  bool refusal_said_ = false;
-  std::int64_t utime_ = 0;           // of the last view
-  std::set<int> blocks_wanted_;      // since these views
-  std::deque<map_blocks_t> blocks_;  // of one answer, still to be published
+  std::int64_t utime_ = 0;               // of the last view
+  std::set<int> blocks_wanted_;          // since these views
+  std::deque<map_blocks_t> blocks_;      // of one answer, still to be published
 };
 
 }  // namespace nextview

@@ -86,6 +86,10 @@ struct PagedMapBuilder::State {
 
   void mark(const VoxelIndex& sensor);
   void hit(OpenBlock& block, const RayEnd& end);
+  void change(OpenBlock& block) {
+    block.changed_in = folds;
+    note(block);
+  }
   void note(OpenBlock& block) {
     block.is_marked = block.is_stale = true;
     if (block.is_noted) return;
@@ -101,9 +105,9 @@ struct PagedMapBuilder::State {
   MapCounts counts;
   QualityCensus quality;
   RayEnds ray_ends;
+  int folds = 0;
   std::int64_t newly_occupied = 0;
-  using Changed = std::vector<OpenBlock*>;
-  Changed changed;  // by the fold under way
+  std::vector<OpenBlock*> changed;  // by the fold under way
 };
 
 PagedMapBuilder::PagedMapBuilder(const VoxelGrid& grid, const MapWindow& extent,
@@ -120,6 +124,7 @@ FoldCounts PagedMapBuilder::fold(const RangeImage& image) {
   check_range_image(image, s.grid, s.extent);
   s.ray_ends.collect(image, s.grid, s.extent);  // eq. 1, eq. 2, normals (P9)
   const VoxelIndex sensor = s.grid.voxel_of(image.position_m);
+  ++s.folds;
   s.store.follow(sensor);  // P10
   s.mark(sensor);          // P12, P9
   s.derive();              // occlusion planes, P13
@@ -138,7 +143,7 @@ void PagedMapBuilder::State::mark(const VoxelIndex& sensor) {
     if (at.is_in(labels.empty) || at.is_in(labels.occupied)) return;
     labels.empty[at.word] |= at.bit;
     labels.hidden[at.word] &= ~at.bit;
-    note(block);
+    change(block);
   };
   const auto hide = [this](OpenBlock& block, const VoxelBit& at) {
     BlockLabels& labels = block.labels;
@@ -146,7 +151,7 @@ void PagedMapBuilder::State::mark(const VoxelIndex& sensor) {
         labels.empty[at.word] | labels.occupied[at.word] | labels.hidden[at.word];
     if ((marked & at.bit) != 0) return;
     labels.hidden[at.word] |= at.bit;
-    note(block);
+    change(block);
   };
   for (const RayEnd& end : ray_ends.ends()) {
     if (end.is_surface) hit(lines.block_of(end.voxel), end);
@@ -184,7 +189,7 @@ void PagedMapBuilder::State::hit(OpenBlock& block, const RayEnd& end) {
     quality.change(surface.quality, end.seen.quality);
     surface.quality = end.seen.quality;
   }
-  note(block);
+  if (is_new || end.seen.normal_count > 0) change(block);
 }
 
 // Of what touches an Empty voxel that has come or gone the planes and faces change too.
@@ -217,7 +222,9 @@ void PagedMapBuilder::State::derive() {
     EmptyNeighbours open;
     find_empty_neighbours(block->labels, beyond, open);
     for (std::size_t z = 0; z < open.any.size(); ++z) {
-      block->labels.occlusion_plane[z] = block->labels.hidden[z] & open.any[z];
+      const std::uint64_t planes = block->labels.hidden[z] & open.any[z];
+      if (planes != block->labels.occlusion_plane[z]) block->changed_in = folds;
+      block->labels.occlusion_plane[z] = planes;
     }
     counts.take_away(block->counts);
     block->counts = counts_of(block->labels, open);
@@ -228,11 +235,19 @@ void PagedMapBuilder::State::derive() {
   changed.clear();
 }
 
+const VoxelGrid& PagedMapBuilder::grid() const { return state_->grid; }
 const MapWindow& PagedMapBuilder::extent() const { return state_->extent; }
 MapWindow PagedMapBuilder::window() const { return state_->store.window(); }
 Label PagedMapBuilder::label(const VoxelIndex& voxel) const { return state_->store.label(voxel); }
 const SurfaceVoxel* PagedMapBuilder::surface(const VoxelIndex& voxel) const {
   return state_->store.surface(voxel);
+}
+
+BlockContent PagedMapBuilder::block(const VoxelIndex& coordinate) const {
+  return state_->store.content(coordinate);
+}
+std::vector<VoxelIndex> PagedMapBuilder::changed_since(int folds) const {
+  return state_->store.changed_after(folds);
 }
 
 MapStatistics PagedMapBuilder::statistics() const {
@@ -250,7 +265,7 @@ std::size_t PagedMapBuilder::blocks_aside() const { return state_->store.blocks_
 std::size_t PagedMapBuilder::memory_bytes() const {
   const State& s = *state_;
   return sizeof(State) + s.store.memory_bytes() + s.quality.memory_bytes() +
-         s.ray_ends.memory_bytes() + s.changed.capacity() * sizeof(State::Changed::value_type);
+         s.ray_ends.memory_bytes() + s.changed.capacity() * sizeof(void*);
 }
 
 }  // namespace nextview

@@ -2,7 +2,9 @@
 
 #include <memory>
 #include <string>
+#include <vector>
 
+#include "mapper/block_content.h"
 #include "mapper/map_statistics.h"
 #include "mapper/voxel_map.h"
 #include "sensor/range_image.h"
@@ -35,6 +37,7 @@ class PagedMapBuilder {
   /// @throws std::invalid_argument as MapBuilder::fold does, the map unchanged
   FoldCounts fold(const RangeImage& image);
 
+  const VoxelGrid& grid() const;
   const MapWindow& extent() const;
   /// What lies open: whole blocks, which may stick out of the extent.
   MapWindow window() const;
@@ -43,6 +46,12 @@ class PagedMapBuilder {
   Label label(const VoxelIndex& voxel) const;
   /// Of an Occupied voxel wherever it lies, else nullptr; valid until the next fold.
   const SurfaceVoxel* surface(const VoxelIndex& voxel) const;
+
+  /// All there is in a block, wherever it lies.
+  BlockContent block(const VoxelIndex& coordinate) const;
+  /// Coordinates of the blocks that have changed, in label or surface, since so many images were
+  /// folded, in their order, x fastest.
+  std::vector<VoxelIndex> changed_since(int folds) const;
 
   MapStatistics statistics() const;  ///< of the whole map
   std::string digest();              ///< of the whole map, as MapBuilder's

@@ -37,7 +37,8 @@ std::size_t blocks_along(int mask) { return static_cast<std::size_t>(mask / kBlo
 
 }  // namespace
 
-VoxelMap::VoxelMap(const VoxelGrid& grid, const MapWindow& window) : grid_(grid), window_(window) {
+VoxelMap::VoxelMap(const VoxelGrid& grid, const MapWindow& window, Label everywhere)
+    : grid_(grid), window_(window) {
   check(grid, window);
   int bits = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -50,7 +51,7 @@ VoxelMap::VoxelMap(const VoxelGrid& grid, const MapWindow& window) : grid_(grid)
     throw std::invalid_argument(fmt::format(
         "the map's window needs 2^{} voxel slots; 2^31 are possible: choose larger voxels", bits));
   }
-  labels_.assign((std::size_t{1} << bits) + kLabelPadding, Label::Unmarked);
+  labels_ = LazyArray((std::size_t{1} << bits) + kLabelPadding, everywhere);
   blocks_.resize(blocks_along(mask_[0]) * blocks_along(mask_[1]) * blocks_along(mask_[2]));
 }
 
@@ -115,8 +116,8 @@ void VoxelMap::move_window(const VoxelIndex& new_min) {
 }
 
 std::size_t VoxelMap::memory_bytes() const {
-  std::size_t bytes = labels_.capacity() * sizeof(Label) +
-                      blocks_.capacity() * sizeof(std::unique_ptr<SurfaceBlock>);
+  std::size_t bytes =
+      labels_.memory_bytes() + blocks_.capacity() * sizeof(std::unique_ptr<SurfaceBlock>);
   for (const auto& block : blocks_) {
     if (block) bytes += sizeof(SurfaceBlock) + block->voxels.capacity() * sizeof(SurfaceVoxel);
   }

@@ -3,10 +3,12 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <memory>
 #include <span>
 #include <vector>
 
+#include "mapper/lazy_array.h"
 #include "mapper/voxel_grid.h"
 
 namespace nextview {
@@ -46,14 +48,15 @@ struct SurfaceVoxel {
 /// The buffer's sides are powers of two and a voxel's slot is its index under a mask per axis, so a
 /// voxel keeps its slot when the window moves and no data moves in memory. Slots run x fastest:
 ///   slot = (i & mask_x) | (j & mask_y) << shift_y | (k & mask_z) << shift_z.
-/// Per voxel: 1 byte of label, 1/128 byte of block table; per 8 x 8 x 8 block that holds a surface
-/// 1 KiB, and 32 bytes per Occupied voxel.
+/// Per voxel: 1 byte of label, of which pages that nobody has written to take no memory
+/// (lazy_array.h), 1/64 byte of block table; per 8 x 8 x 8 block that holds a surface 1 KiB, and 32
+/// bytes per Occupied voxel.
 class VoxelMap {
  public:
-  /// An all-Unmarked map.
+  /// A map of one label, by default all Unmarked.
   /// @throws std::invalid_argument unless the voxel size is positive and finite and every side of
   ///         the window is in [1, 4096] with at most 2^31 slots in all
-  VoxelMap(const VoxelGrid& grid, const MapWindow& window);
+  VoxelMap(const VoxelGrid& grid, const MapWindow& window, Label everywhere = Label::Unmarked);
 
   const VoxelGrid& grid() const { return grid_; }
   const MapWindow& window() const { return window_; }
@@ -93,6 +96,9 @@ class VoxelMap {
   }
   std::span<Label> labels() { return {labels_.data(), labels_.size() - kLabelPadding}; }
   std::span<const Label> labels() const { return {labels_.data(), labels_.size() - kLabelPadding}; }
+  /// Calls see(slot, label) for all voxels that are not Unmarked, in the order of their slots.
+  template <typename See>
+  void for_each_marked(See see) const;
   /// The label of any slot may be read as the first byte of a word: this many bytes follow the
   /// last.
   static constexpr std::size_t kLabelPadding = 3;
@@ -118,8 +124,27 @@ class VoxelMap {
   MapWindow window_;
   std::array<int, 3> mask_;
   std::array<int, 3> shift_;
-  std::vector<Label> labels_;
+  LazyArray<Label> labels_;
   std::vector<std::unique_ptr<SurfaceBlock>> blocks_;  ///< by slot / kBlockSide per axis
 };
+
+template <typename See>
+void VoxelMap::for_each_marked(See see) const {
+  const std::span<const Label> all = labels();
+  std::size_t slot = 0;
+  while (slot < all.size()) {
+    std::uint64_t eight = 0;
+    if (slot + sizeof(eight) <= all.size()) {
+      std::memcpy(&eight, &all[slot], sizeof(eight));
+      if (eight == 0) {
+        slot += sizeof(eight);
+        continue;
+      }
+    }
+    // Slots between the window's sides and those of the buffer are nobody's.
+    if (all[slot] != Label::Unmarked && contains(index_of_slot(slot))) see(slot, all[slot]);
+    ++slot;
+  }
+}
 
 }  // namespace nextview

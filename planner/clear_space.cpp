@@ -25,20 +25,11 @@ ClearSpace::ClearSpace(const VoxelMap& map, const FeasibilityParameters& paramet
   }
   const std::size_t cells =
       static_cast<std::size_t>(stride_[2]) * static_cast<std::size_t>(sides[2]);
-  kinds_.assign(cells, Kind::Unknown);
-  against_.assign(cells,
-                  kNotEmpty | kBeyondLimits | static_cast<std::uint32_t>(body_.size()) * kUnknown);
-  const VoxelIndex end = window_.min + window_.size;
-  for (int k = window_.min[2]; k < end[2]; ++k) {
-    for (int j = window_.min[1]; j < end[1]; ++j) {
-      for (int i = window_.min[0]; i < end[0]; ++i) {
-        const VoxelIndex index(i, j, k);
-        const Cell cell = this->cell(index);
-        if (parameters_.within_limits(grid_.center_m(index))) against_[cell] &= ~kBeyondLimits;
-        change(cell, kind_of(map.label(index)));
-      }
-    }
-  }
+  kinds_ = LazyArray(cells, Kind::Unknown);
+  against_ = LazyArray(
+      cells, kNotEmpty | kBeyondLimits | static_cast<std::uint32_t>(body_.size()) * kUnknown);
+  map.for_each_marked(
+      [&](std::size_t slot, Label label) { change(map.index_of_slot(slot), kind_of(label)); });
 }
 
 template <class IsNearer>
@@ -68,10 +59,14 @@ ClearSpace::Kind ClearSpace::kind_of(Label label) {
   throw std::logic_error("a label that does not exist");
 }
 
-bool ClearSpace::change(Cell cell, Kind to) {
+bool ClearSpace::change(const VoxelIndex& index, Kind to) {
+  const Cell cell = this->cell(index);
   const Kind from = kinds_[cell];
   if (from == to) return false;
   kinds_[cell] = to;
+  if (from == Kind::Unknown && parameters_.within_limits(grid_.center_m(index))) {
+    against_[cell] &= ~kBeyondLimits;
+  }
   const auto add_around = [&](const std::vector<int>& steps, std::uint32_t count) {
     for (const int step : steps) against_[cell + static_cast<Cell>(step)] += count;
   };
@@ -88,7 +83,7 @@ std::vector<std::uint32_t> ClearSpace::update(const VoxelMap& map,
                                               std::span<const std::uint32_t> changed_slots) {
   std::vector<std::uint32_t> changed;
   for (const std::uint32_t slot : changed_slots) {
-    if (change(cell(map.index_of_slot(slot)), kind_of(map.labels()[slot]))) changed.push_back(slot);
+    if (change(map.index_of_slot(slot), kind_of(map.labels()[slot]))) changed.push_back(slot);
   }
   return changed;
 }
@@ -110,8 +105,7 @@ void ClearSpace::unblock_all() {
 }
 
 std::size_t ClearSpace::memory_bytes() const {
-  return kinds_.capacity() * sizeof(Kind) + against_.capacity() * sizeof(std::uint32_t) +
-         blocked_.capacity() * sizeof(Cell);
+  return kinds_.memory_bytes() + against_.memory_bytes() + blocked_.capacity() * sizeof(Cell);
 }
 
 }  // namespace nextview

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "mapper/lazy_array.h"
 #include "mapper/voxel_map.h"
 #include "planner/feasibility.h"
 
@@ -20,9 +21,9 @@ namespace nextview {
 ///     Occupied voxels within the clearance | unknown ones within the body | three reasons more
 ///
 /// A voxel that changes its label changes the counts around it, so an update costs what the range
-/// image changed, whatever the size of the map. Cells are the window's voxels and a margin around
-/// it that is never clear, so that neighbours are fixed distances away and nobody asks for the
-/// border.
+/// image changed, whatever the size of the map, and memory what has been seen of it. Cells are the
+/// window's voxels and a margin around it that is never clear, so that neighbours are fixed
+/// distances away and nobody asks for the border.
 class ClearSpace {
  public:
   /// Of a whole map.
@@ -62,6 +63,7 @@ class ClearSpace {
     return window_.contains(index) && is_clear(cell(index));
   }
   bool is_empty(Cell cell) const { return (against_[cell] & kNotEmpty) == 0; }
+  /// Of a voxel that is known; of others nobody has asked the limits.
   bool is_within_limits(Cell cell) const { return (against_[cell] & kBeyondLimits) == 0; }
   bool is_blocked(Cell cell) const { return (against_[cell] & kBlocked) != 0; }
   bool is_occupied_near(Cell cell) const { return (against_[cell] & kOccupiedMask) != 0; }
@@ -81,7 +83,7 @@ class ClearSpace {
   static constexpr std::uint32_t kBlocked = 1u << 31;
 
   static Kind kind_of(Label label);
-  bool change(Cell cell, Kind to);
+  bool change(const VoxelIndex& index, Kind to);
   template <class IsNearer>
   std::vector<int> steps_where(int reach, const IsNearer& is_nearer) const;
 
@@ -92,8 +94,8 @@ class ClearSpace {
   VoxelIndex stride_;      // between cells along x, y, z
   std::vector<int> near_;  // steps to all cells whose centre is nearer than the clearance
   std::vector<int> body_;  // and to those whose box is nearer than the body's radius
-  std::vector<Kind> kinds_;
-  std::vector<std::uint32_t> against_;
+  LazyArray<Kind> kinds_;
+  LazyArray<std::uint32_t> against_;
   std::vector<Cell> blocked_;
 };
 

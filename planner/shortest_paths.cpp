@@ -49,11 +49,15 @@ void ShortestPaths::stand_at(const ClearSpace& space, const VoxelMap& map,
   }
   space_ = &space;
   present_m_ = present_m;
-  lengths_.assign(space.cells(), kNoLength);
-  arrived_.resize(space.cells());
-  passage_.resize(space.cells(), Passage::AsClear);
+  for (const Cell cell : has_length_) lengths_[cell] = kNoLength;
+  has_length_.clear();
   for (const Cell cell : exempted_) passage_[cell] = Passage::AsClear;
   exempted_.clear();
+  if (lengths_.size() != space.cells()) {
+    lengths_ = LazyArray(space.cells(), std::uint32_t{kNoLength});
+    arrived_ = LazyArray<std::uint8_t>(space.cells());
+    passage_ = LazyArray(space.cells(), Passage::AsClear);
+  }
   reached_.clear();
   found_all_ = false;
   exempt_around(map, present, departure_m);
@@ -158,6 +162,7 @@ void ShortestPaths::find_all() {
       --waiting;
       if (lengths_[cell] != length) continue;  // found again on a shorter path
       reached_.push_back(space_->index(cell));
+      has_length_.push_back(cell);
       for (std::size_t d = 0; d < step.size(); ++d) {
         const Cell next = cell + static_cast<Cell>(step[d]);
         const std::uint32_t next_length = length + directions()[d].length;

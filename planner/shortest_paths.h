@@ -6,6 +6,7 @@
 #include <limits>
 #include <vector>
 
+#include "mapper/lazy_array.h"
 #include "planner/clear_space.h"
 
 namespace nextview {
@@ -63,6 +64,11 @@ class ShortestPaths {
     return waypoints_m(space_->grid().voxel_of(position_m), position_m);
   }
 
+  /// Of what is kept for each cell.
+  std::size_t memory_bytes() const {
+    return lengths_.memory_bytes() + arrived_.memory_bytes() + passage_.memory_bytes();
+  }
+
  private:
   using Cell = ClearSpace::Cell;
   // How a cell may be passed.
@@ -89,12 +95,13 @@ class ShortestPaths {
 
   const ClearSpace* space_ = nullptr;
   Eigen::Vector3d present_m_ = Eigen::Vector3d::Zero();
-  std::vector<std::uint32_t> lengths_;  // by cell, 1/1000 voxel
-  std::vector<std::uint8_t> arrived_;   // by cell: the direction of the last step there
-  std::vector<Passage> passage_;        // by cell
+  LazyArray<std::uint32_t> lengths_;  // by cell, 1/1000 voxel
+  LazyArray<std::uint8_t> arrived_;   // by cell: the direction of the last step there
+  LazyArray<Passage> passage_;        // by cell
   std::vector<Cell> exempted_;
   bool found_all_ = false;
   std::vector<VoxelIndex> reached_;
+  std::vector<Cell> has_length_;            // cells
   std::vector<std::vector<Cell>> buckets_;  // cells still to be left, by length
 };
 

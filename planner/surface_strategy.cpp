@@ -83,7 +83,7 @@ SurfaceGain::Known SurfaceStrategy::known(const KnownSpace& space) const {
 void SurfaceStrategy::begin_with(const KnownSpace& space) {
   clear_.emplace(space.map(), parameters_.feasibility);
   if (parameters_.grow_planes) grown_.emplace(space.map());
-  in_vain_.assign(space.field().size(), 0);
+  in_vain_ = LazyArray<std::uint8_t>(space.field().size());
   aimed_at_.clear();
   refused_.clear();
   candidates_.begin_with(known(space));

@@ -91,7 +91,7 @@ class SurfaceStrategy : public Strategy {
   std::optional<ClearSpace> clear_;  // of the map's window
   std::optional<GrownSurface> grown_;
   ShortestPaths paths_;
-  std::vector<std::uint8_t> in_vain_;         // by offset of the field
+  LazyArray<std::uint8_t> in_vain_;           // by offset of the field
   std::vector<std::uint32_t> aimed_at_;       // offsets the view under way is to show
   std::vector<std::uint32_t> changed_slots_;  // folded, not yet followed
   std::vector<std::uint32_t> updated_surfaces_;

@@ -20,7 +20,7 @@ bool PositionLattice::holds(const VoxelIndex& voxel) const {
 }
 
 void ViewCandidates::begin_with(const SurfaceGain::Known& known) {
-  changed_in_.assign(known.field.size(), 0);
+  changed_in_ = LazyArray<std::int32_t>(known.field.size());
   judgements_.clear();
 }
 

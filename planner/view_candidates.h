@@ -8,6 +8,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "mapper/lazy_array.h"
 #include "planner/prediction/surface_gain.h"
 #include "planner/shortest_paths.h"
 
@@ -100,7 +101,7 @@ class ViewCandidates {
   double path_cost_per_m_;
   int view_ = 0;
   std::vector<CandidateView> judged_;
-  std::vector<std::int32_t> changed_in_;  // by block: the last view in which it has changed
+  LazyArray<std::int32_t> changed_in_;  // by block: the last view in which it has changed
   std::unordered_map<std::uint64_t, Judgement> judgements_;  // by offset
 };
 

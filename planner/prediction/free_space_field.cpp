@@ -64,17 +64,32 @@ FreeSpaceField::FreeSpaceField(const VoxelMap& map, int threads)
   if (bits > 30) {
     throw std::invalid_argument("the map's window is too large to plan in: choose larger voxels");
   }
-  bytes_.assign((static_cast<std::size_t>(cells_[2]) << shift_[2]) + 3, kOutside);
-  for (int z = 0; z < window_.size[2]; ++z) {
-    for (int y = 0; y < window_.size[1]; ++y) {
-      std::uint8_t* const bytes = row(y + 1, z + 1) + 1;
-      for (int x = 0; x < window_.size[0]; ++x) {
-        bytes[x] = byte_of(map.label(window_.min + VoxelIndex(x, y, z)));
-      }
-    }
-  }
+  bytes_ = all_unseen();
+  Box empty{cells_, VoxelIndex::Zero()};
+  map.for_each_marked([&](std::size_t slot, Label label) {
+    const VoxelIndex index = map.index_of_slot(slot);
+    bytes_[offset(index)] = byte_of(label);
+    if (label == Label::Empty) empty.add(index - window_.min + VoxelIndex::Ones());
+  });
+  if ((empty.min.array() >= empty.end.array()).any()) return;
 #pragma omp parallel num_threads(threads_) if (threads_ > 1)
-  find_distances({VoxelIndex::Zero(), cells_});
+  find_distances(empty);
+}
+
+LazyArray<std::uint8_t> FreeSpaceField::all_unseen() const {
+  const auto layer_bytes = std::size_t{1} << shift_[2];
+  std::vector<std::byte> layer(layer_bytes, std::byte{kOutside});
+  for (int y = 0; y < window_.size[1]; ++y) {
+    const std::size_t begin = (static_cast<std::size_t>(y + 1) << shift_[1]) + 1;
+    std::fill_n(layer.begin() + static_cast<std::ptrdiff_t>(begin), window_.size[0],
+                std::byte{kUnseen});
+  }
+  const std::vector<std::byte> outside(1, std::byte{kOutside});
+  const LazyPages::Stretch stretches[] = {
+      {outside, layer_bytes},
+      {std::move(layer), static_cast<std::size_t>(window_.size[2]) << shift_[2]},
+      {outside, layer_bytes + 3}};
+  return LazyArray<std::uint8_t>(stretches);
 }
 
 void FreeSpaceField::update(const VoxelMap& map, std::span<const std::uint32_t> changed_slots) {
@@ -95,7 +110,7 @@ void FreeSpaceField::move(const VoxelMap& map, Box& changed) {
   FreeSpaceField before = std::move(*this);
   distance_ = std::move(before.distance_);
   window_ = map.window();
-  bytes_.assign(before.bytes_.size(), kOutside);
+  bytes_ = LazyArray<Byte>(before.bytes_.size(), Byte{kOutside});
   const MapWindow kept = overlap(before.window_, window_);
   const auto row_of = [](auto& field, const VoxelIndex& voxel) {
     return field.bytes_.begin() + static_cast<std::ptrdiff_t>(field.offset(voxel));

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "mapper/lazy_array.h"
 #include "mapper/voxel_map.h"
 #include "planner/prediction/chebyshev_distance.h"
 
@@ -25,7 +26,8 @@ namespace nextview {
 /// farther. Of the bytes that end a walk the bits of kMaxJump are 0: a walk adds them to its steps
 /// without asking. The sides of the field are powers of two, so an offset is made by shifts; unlike
 /// the map's buffer it has a layer around the window, so that a walk needs no test for the limit.
-/// Only the box around what changed is worked out again (chebyshev_distance.h). So the field keeps
+/// Only the box around what changed is worked out again (chebyshev_distance.h), and what nobody has
+/// seen takes no memory (lazy_array.h). So the field keeps
 /// its own layout, relative to the window; when that moves, what stays is copied.
 class FreeSpaceField {
  public:
@@ -71,7 +73,7 @@ class FreeSpaceField {
   std::size_t size() const { return bytes_.size() - 3; }
   /// log2 of the distance in bytes between neighbours along x, y, z.
   std::array<int, 3> shifts() const { return shift_; }
-  std::size_t memory_bytes() const { return bytes_.capacity() + distance_.memory_bytes(); }
+  std::size_t memory_bytes() const { return bytes_.memory_bytes() + distance_.memory_bytes(); }
 
  private:
   // Boxes of cells; a cell is a voxel's index relative to the layer around the window.
@@ -86,6 +88,7 @@ class FreeSpaceField {
   };
 
   static std::uint8_t byte_of(Label label);
+  LazyArray<std::uint8_t> all_unseen() const;
   std::uint8_t* row(int y, int z) {
     return &bytes_[(static_cast<std::size_t>(y) << shift_[1]) +
                    (static_cast<std::size_t>(z) << shift_[2])];
@@ -101,7 +104,7 @@ class FreeSpaceField {
   MapWindow window_;
   VoxelIndex cells_;  ///< window and layer; along x some more that are outside
   std::array<int, 3> shift_;
-  std::vector<std::uint8_t> bytes_;
+  LazyArray<std::uint8_t> bytes_;
   ChebyshevDistance distance_;  ///< workspace
   int threads_;
 };

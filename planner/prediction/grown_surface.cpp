@@ -9,19 +9,13 @@ namespace {
 
 bool is_unknown(Label label) { return label != Label::Empty && label != Label::Occupied; }
 
-VoxelMap all_empty(const VoxelMap& map) {
-  VoxelMap empty(map.grid(), map.window());
-  std::ranges::fill(empty.labels(), Label::Empty);
-  return empty;
-}
-
 constexpr std::int8_t kMaxEmpty = 2;  // voxels a plane bridges
 
 }  // namespace
 
 GrownSurface::GrownSurface(const VoxelMap& map)
     : reach_(std::max(1, static_cast<int>(kReach_m / map.grid().voxel_size_m))),
-      expected_(all_empty(map)),
+      expected_(map.grid(), map.window(), Label::Empty),
       field_(expected_),
       with_unknown_(map.grid(), map.window()),
       unknown_too_(with_unknown_) {
@@ -31,13 +25,11 @@ GrownSurface::GrownSurface(const VoxelMap& map)
         static_cast<std::int32_t>(std::lround(kCertain * std::exp(-std::sqrt(squared) / decay))));
   }
   buckets_.resize(by_distance_.size());
-  likelihood_.assign(field_.size(), 0);
+  likelihood_ = LazyArray<std::int32_t>(field_.size());
   std::vector<std::uint32_t> known;
-  for (std::size_t slot = 0; slot < map.labels().size(); ++slot) {
-    if (map.labels()[slot] == Label::Occupied || map.labels()[slot] == Label::Empty) {
-      known.push_back(static_cast<std::uint32_t>(slot));
-    }
-  }
+  map.for_each_marked([&](std::size_t slot, Label label) {
+    if (!is_unknown(label)) known.push_back(static_cast<std::uint32_t>(slot));
+  });
   update(map, known);
 }
 

@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "mapper/lazy_array.h"
 #include "mapper/voxel_map.h"
 #include "planner/prediction/free_space_field.h"
 
@@ -75,7 +76,7 @@ class GrownSurface {
   FreeSpaceField field_;
   VoxelMap with_unknown_;  // the same, what is unknown else as Unmarked
   FreeSpaceField unknown_too_;
-  std::vector<std::int32_t> likelihood_;  // by offset
+  LazyArray<std::int32_t> likelihood_;  // by offset
   std::vector<Grown> grown_;
   std::vector<VoxelIndex> bridges_;
   std::vector<std::uint32_t> changed_;

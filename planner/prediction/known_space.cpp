@@ -9,9 +9,9 @@ KnownSpace::KnownSpace(const VoxelMap& map, Surfaces surfaces, int threads)
     : map_(map), surfaces_kept_(surfaces), field_(map, threads) {
   if (!keeps_surfaces()) return;
   std::vector<std::uint32_t> occupied;
-  for (std::size_t slot = 0; slot < map.labels().size(); ++slot) {
-    if (map.labels()[slot] == Label::Occupied) occupied.push_back(static_cast<std::uint32_t>(slot));
-  }
+  map.for_each_marked([&](std::size_t slot, Label label) {
+    if (label == Label::Occupied) occupied.push_back(static_cast<std::uint32_t>(slot));
+  });
   surfaces_.update(map, field_, occupied);
 }
 

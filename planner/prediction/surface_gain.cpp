@@ -74,7 +74,10 @@ void SurfaceGain::look_again(const Known& known, const VoxelIndex& sensor,
 }
 
 void SurfaceGain::judge(const Known& known) {
-  noted_.resize(known.field.size(), 0);
+  if (noted_.size() < known.field.size()) {
+    noted_ = LazyArray<std::uint8_t>(known.field.size());
+    blocks_.clear();
+  }
   for (const std::uint32_t block : blocks_) noted_[block] = 0;
   blocks_.clear();
   if (parameters_.improvement_weight > 0.0) add_improvement(known);
@@ -132,7 +135,7 @@ void SurfaceGain::look_behind_bridges(const Known& known, const VoxelIndex& sens
 
 void SurfaceGain::count(const Panorama::Cells& cells, const std::vector<std::int32_t>& met_at,
                         std::size_t offsets, Tally& tally) {
-  tally.by_offset.resize(offsets, 0);
+  if (tally.by_offset.size() < offsets) tally.by_offset = LazyArray<std::int32_t>(offsets);
   for_each(cells, [&](std::size_t cell) {
     const auto offset = static_cast<std::uint32_t>(met_at[cell]);
     if (tally.by_offset[offset]++ == 0) tally.offsets.push_back(offset);

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "mapper/lazy_array.h"
 #include "planner/prediction/free_space_field.h"
 #include "planner/prediction/panorama.h"
 #include "planner/prediction/predicted_quality.h"
@@ -88,8 +89,8 @@ class SurfaceGain {
  private:
   // How many cells meet each voxel, then what each of them counts.
   struct Tally {
-    std::vector<std::uint32_t> offsets;   // of the voxels, each once
-    std::vector<std::int32_t> by_offset;  // 0 in between
+    std::vector<std::uint32_t> offsets;  // of the voxels, each once
+    LazyArray<std::int32_t> by_offset;   // 0 in between
   };
 
   ExpectedView new_in(std::size_t orientation) const;
@@ -120,7 +121,7 @@ class SurfaceGain {
   Tally grown_;
   PanoramaViews::RowSums gain_sums_;
   PanoramaViews::RowSums improvement_sums_;
-  std::vector<std::uint8_t> noted_;  // by block of the field; 0 in between
+  LazyArray<std::uint8_t> noted_;  // by block of the field; 0 in between
   std::vector<std::uint32_t> blocks_;
 };
 

@@ -7,14 +7,18 @@
 
 #include <array>
 #include <map>
+#include <optional>
 #include <set>
+#include <string>
 #include <vector>
 
+#include "mapper/map_blocks_message.h"
 #include "mapper/mapper_config.h"
 #include "mapper/mapper_process.h"
 #include "sensor/sensor_config.h"
 #include "sensor_sim/scan.h"
 #include "tests/lcmtypes/lossy_network.h"
+#include "tests/mapper/small_world.h"
 #include "tests/planner/boxes_run.h"
 
 namespace nextview {
@@ -85,7 +89,12 @@ class Follower {
   std::map<std::pair<int, int>, std::set<int>> came_;
 };
 
-class MapForOthers : public testing::TestWithParam<LossyNetwork::Faults> {
+struct Case {
+  LossyNetwork::Faults faults;
+  std::optional<VoxelIndex> window;  // what of the mapper's map lies open; all of it
+};
+
+class MapForOthers : public testing::TestWithParam<Case> {
  protected:
   MapForOthers() {
     mapper_bus_.on_missing([this](const request_t& request) { mapper_.on_missing(request); });
@@ -157,11 +166,11 @@ class MapForOthers : public testing::TestWithParam<LossyNetwork::Faults> {
   run_config_t config_ = fine_config();
   Scene room_{load_mesh(config_.scene_file)};
   MapBuilder twin_{grid_of(config_), window_of(config_)};
-  LossyNetwork network_{GetParam(), 3};
+  LossyNetwork network_{GetParam().faults, 3};
   Bus sensor_bus_{network_.connect(), 7, "sensor_sim"};
   Bus mapper_bus_{network_.connect(), 7, "mapper"};
   Bus other_{network_.connect(), 7, "other"};
-  MapperProcess mapper_{mapper_bus_, config_};
+  MapperProcess mapper_{mapper_bus_, config_, GetParam().window};
   std::map<int, commit_t> commits_;
   std::vector<map_blocks_t> parts_;
 };
@@ -207,8 +216,9 @@ TEST_P(MapForOthers, IsTheMappersInStepsAndAtOnce) {
 }
 
 INSTANTIATE_TEST_SUITE_P(OnABus, MapForOthers,
-                         testing::Values(LossyNetwork::Faults{},
-                                         LossyNetwork::Faults{0.2, 0.2, 0.2}));
+                         testing::Values(Case{}, Case{{0.2, 0.2, 0.2}, {}},
+                                         Case{{}, VoxelIndex(16, 16, 8)},
+                                         Case{{0.2, 0.2, 0.2}, VoxelIndex(16, 16, 8)}));
 
 using MapBlocksMessages = MapForOthers;
 
@@ -309,7 +319,36 @@ TEST_P(MapBlocksMessages, AreAsOfOneViewAndLetImagesGoFirst) {
   for (const map_blocks_t& part : parts_) EXPECT_EQ(part.view, 1);
 }
 
-INSTANTIATE_TEST_SUITE_P(OnAQuietBus, MapBlocksMessages, testing::Values(LossyNetwork::Faults{}));
+INSTANTIATE_TEST_SUITE_P(OnAQuietBus, MapBlocksMessages,
+                         testing::Values(Case{}, Case{{}, VoxelIndex(16, 16, 8)}));
+
+// Whoever follows need not know whether the mapper has a window.
+TEST(MapBlocksOfAWindow, AreTheSameToTheLastBit) {
+  int blocks = 0;
+  for (int n = 0; n < 100; ++n) {
+    SCOPED_TRACE("world " + std::to_string(n));
+    RandomStream random(n, 4, 1, RandomPurpose::RangeNoise);
+    const SmallWorld world = random_small_world(random);
+    MapBuilder whole(world.grid, world.window);
+    BlockHistory history(whole.map());
+    PagedMapBuilder paged(world.grid, world.window, {8, 16, 8});
+    for (int view = 1; view <= 5; ++view) {
+      const RangeImage image = random_view(world, random_sensor(random), random);
+      history.view_folded(view, whole.fold(image));
+      paged.fold(image);
+      for (int since = 0; since <= view; ++since) {
+        const auto expected = map_blocks_messages(whole.map(), history, view, since, 1000);
+        const auto answer = map_blocks_messages(paged, view, since, 1000);
+        ASSERT_EQ(answer.size(), expected.size());
+        for (std::size_t part = 0; part < answer.size(); ++part) {
+          blocks += answer[part].blocks;
+          ASSERT_EQ(encode(answer[part]), encode(expected[part])) << "since " << since;
+        }
+      }
+    }
+  }
+  EXPECT_GT(blocks, 10000);
+}
 
 }  // namespace
 }  // namespace nextview
