@@ -22,6 +22,11 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
+run_config_t decided_by(run_config_t config, std::optional<int> threads) {
+  config.planner.threads = threads.value_or(config.planner.threads);
+  return config;
+}
+
 /// Goes through a log in the order in which it came about.
 class Replay {
  public:
@@ -31,7 +36,7 @@ class Replay {
         config_(*record_.config()),
         simulated_(simulated_in(record_)),
         options_(options),
-        planner_(make_view_planner(config_)) {}
+        planner_(make_view_planner(decided_by(config_, options.threads))) {}
 
   ReplayReport run() {
     report_.differences = log_.contradictions();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -9,6 +10,8 @@ namespace nextview {
 
 struct ReplayOptions {
   bool planner = false;  ///< decide every goal again, too
+  /// Threads to decide with, in place of the run's; of no influence on the results.
+  std::optional<int> threads;
 };
 
 /// What came of a replay.

@@ -106,8 +106,12 @@ int main(int argc, char** argv) {
                  "Folder of a run, or an LCM log; several files: of one log that was split, in the "
                  "order in which they were recorded")
       ->required();
-  app.add_flag("--planner", options.planner,
-               "Decide every goal again, too, and compare pose, path, fitness and search exactly");
+  CLI::Option* const decide = app.add_flag(
+      "--planner", options.planner,
+      "Decide every goal again, too, and compare pose, path, fitness and search exactly");
+  app.add_option("--threads", options.threads,
+                 "Threads to decide with, in place of the run's; the result does not depend on it")
+      ->needs(decide);
   app.add_option("--run", run, "The run to replay, when the log holds several");
   app.set_version_flag("--version", "nextview_replay " + std::string(nextview::program_version()));
   app.footer(

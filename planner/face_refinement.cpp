@@ -6,6 +6,8 @@
 #include <numeric>
 #include <queue>
 
+#include "sensor/elementary_functions.h"
+
 namespace nextview {
 
 namespace {
@@ -81,7 +83,7 @@ double hope_within(const Fitness& face, int subdivisions, const FactorWeights& w
   const double factors = product_of_factors(face, 0.0, weights);
   const double by_shares = best_area_fitness(face, slack.share) * factors - face.value;
   const double by_factors = area * product_of_factors(face, slack.factor, weights) - face.value;
-  return face.value + std::hypot(by_shares, by_factors);
+  return face.value + elementary::hypot(by_shares, by_factors);
 }
 
 FaceRefinement::FaceRefinement(int subdivisions) : subdivisions_(subdivisions) {

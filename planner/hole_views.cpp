@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <map>
 #include <optional>
 #include <stdexcept>
 
 #include "lcmtypes/parameter_bounds.h"
 #include "mapper/integer_line.h"
+#include "sensor/elementary_functions.h"
 
 namespace nextview {
 
@@ -89,7 +89,9 @@ class ViewFinder {
   // What a view from a voxel shows of one of a hole if nothing lies between; 0 when it is too near,
   // too far or too flat.
   double gain(const VoxelIndex& from, const HoleVoxel& voxel) const;
-  double discount(double path_m) const { return std::exp(-parameters_.path_cost_per_m * path_m); }
+  double discount(double path_m) const {
+    return elementary::exp(-parameters_.path_cost_per_m * path_m);
+  }
   void aim(HoleView& view, const Eigen::Vector3d& direction) const;
   bool is_in_field(const HoleView& view, const Eigen::Matrix3d& sensor_from_world,
                    const VoxelIndex& voxel) const;
@@ -119,9 +121,9 @@ double ViewFinder::gain(const VoxelIndex& from, const HoleVoxel& voxel) const {
 }
 
 void ViewFinder::aim(HoleView& view, const Eigen::Vector3d& direction) const {
-  const double across = std::hypot(direction.x(), direction.y());
-  view.pan_rad = across > 0.0 ? std::atan2(-direction.x(), direction.y()) : 0.0;
-  view.tilt_rad = std::atan2(direction.z(), across);
+  const double across = elementary::hypot(direction.x(), direction.y());
+  view.pan_rad = across > 0.0 ? elementary::atan2(-direction.x(), direction.y()) : 0.0;
+  view.tilt_rad = elementary::atan2(direction.z(), across);
 }
 
 bool ViewFinder::is_in_field(const HoleView& view, const Eigen::Matrix3d& sensor_from_world,
@@ -174,9 +176,10 @@ bool ViewFinder::may_be_in_field(const HoleView& view, const Eigen::Vector3d& ah
   const double distance = towards.norm();
   if (voxel_m_ * (distance - hole.radius) > parameters_.range_max_m + kRounding) return false;
   if (distance <= hole.radius) return true;
-  const double aside_rad = std::acos(std::clamp(ahead.dot(towards) / distance, -1.0, 1.0));
-  const double half_width_rad = std::acos(std::clamp(parameters_.field.least_ahead, -1.0, 1.0));
-  return aside_rad <= half_width_rad + std::asin(hole.radius / distance) + kRounding;
+  const double aside_rad = elementary::acos(std::clamp(ahead.dot(towards) / distance, -1.0, 1.0));
+  const double half_width_rad =
+      elementary::acos(std::clamp(parameters_.field.least_ahead, -1.0, 1.0));
+  return aside_rad <= half_width_rad + elementary::asin(hole.radius / distance) + kRounding;
 }
 
 void ViewFinder::count_all(HoleView& view, SightFrom& sight) const {

@@ -1,8 +1,9 @@
 #include "planner/view_candidates.h"
 
 #include <algorithm>
-#include <cmath>
 #include <queue>
+
+#include "sensor/elementary_functions.h"
 
 namespace nextview {
 
@@ -64,7 +65,7 @@ const ViewCandidates::Judgement& ViewCandidates::judgement_at(const SurfaceGain:
 CandidateView ViewCandidates::candidate(const Judgement& judgement, const VoxelIndex& voxel,
                                         double path_m) const {
   return {voxel, path_m, judgement.view, judgement.value,
-          judgement.value * std::exp(-path_cost_per_m_ * path_m)};
+          judgement.value * elementary::exp(-path_cost_per_m_ * path_m)};
 }
 
 CandidateView ViewCandidates::judge(const SurfaceGain::Known& known, const ShortestPaths& paths,

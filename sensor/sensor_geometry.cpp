@@ -3,11 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 #include <stdexcept>
 
 #include "lcmtypes/parameter_bounds.h"
+#include "sensor/elementary_functions.h"
 
 namespace nextview {
 
@@ -47,8 +47,8 @@ void check(const LineStriper& sensor) {
 // The angles of an axis, as its sines and cosines.
 struct Axis {
   void add(double angle) {
-    sines.push_back(std::sin(angle));
-    cosines.push_back(std::cos(angle));
+    sines.push_back(elementary::sin(angle));
+    cosines.push_back(elementary::cos(angle));
   }
   std::vector<double> sines, cosines;
 };
@@ -82,8 +82,8 @@ TiltedLineScan TiltedLineScan::with_aperture(int columns, int rows,
   sensor.columns = columns;
   sensor.rows = rows;
   sensor.horizontal_aperture_rad = horizontal_aperture_rad;
-  sensor.vertical_aperture_rad =
-      std::atan(static_cast<double>(rows) / columns * std::tan(horizontal_aperture_rad));
+  sensor.vertical_aperture_rad = elementary::atan(static_cast<double>(rows) / columns *
+                                                  elementary::tan(horizontal_aperture_rad));
   return sensor;
 }
 
@@ -106,10 +106,10 @@ RayTable make_ray_table(const SphericalScanner& sensor) {
 
 RayTable make_ray_table(const LineStriper& sensor) {
   check(sensor);
-  const double highest = std::tan(0.5 * sensor.vertical_aperture_rad);
+  const double highest = elementary::tan(0.5 * sensor.vertical_aperture_rad);
   Axis theta;
   for (int v = 0; v < sensor.rows; ++v) {
-    theta.add(std::atan(highest * (1.0 - 2.0 * v / (sensor.rows - 1))));
+    theta.add(elementary::atan(highest * (1.0 - 2.0 * v / (sensor.rows - 1))));
   }
   return upright(SensorKind::LineStriper, even_angles(sensor.columns, sensor.sweep_rad), theta);
 }

@@ -1,14 +1,14 @@
 #include "sensor/sensor_pose.h"
 
-#include <cmath>
+#include "sensor/elementary_functions.h"
 
 namespace nextview {
 
 Eigen::Matrix3d world_from_sensor_rotation(double pan_rad, double tilt_rad) {
-  const double sp = std::sin(pan_rad);
-  const double cp = std::cos(pan_rad);
-  const double st = std::sin(tilt_rad);
-  const double ct = std::cos(tilt_rad);
+  const double sp = elementary::sin(pan_rad);
+  const double cp = elementary::cos(pan_rad);
+  const double st = elementary::sin(tilt_rad);
+  const double ct = elementary::cos(tilt_rad);
   Eigen::Matrix3d rotation;
   rotation << cp, -sp * ct, sp * st,  //
       sp, cp * ct, -cp * st,          //

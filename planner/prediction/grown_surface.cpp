@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "sensor/elementary_functions.h"
+
 namespace nextview {
 
 namespace {
@@ -21,8 +23,8 @@ GrownSurface::GrownSurface(const VoxelMap& map)
       unknown_too_(with_unknown_) {
   const double decay = kDecay_m / map.grid().voxel_size_m;
   for (int squared = 0; squared <= reach_ * reach_; ++squared) {
-    by_distance_.push_back(
-        static_cast<std::int32_t>(std::lround(kCertain * std::exp(-std::sqrt(squared) / decay))));
+    by_distance_.push_back(static_cast<std::int32_t>(
+        std::lround(kCertain * elementary::exp(-std::sqrt(squared) / decay))));
   }
   buckets_.resize(by_distance_.size());
   likelihood_ = LazyArray<std::int32_t>(field_.size());

@@ -1,9 +1,10 @@
 #include "planner/prediction/orientations.h"
 
 #include <Eigen/Geometry>
-#include <cmath>
 #include <numbers>
 #include <stdexcept>
+
+#include "sensor/elementary_functions.h"
 
 namespace nextview {
 
@@ -78,8 +79,8 @@ std::vector<Orientation> icosahedron_orientations(int subdivisions) {
   for (const auto& [a, b, c] : icosahedron_faces(subdivisions)) {
     Orientation orientation;
     orientation.direction = (a + b + c).normalized();
-    orientation.pan_rad = std::atan2(-orientation.direction.x(), orientation.direction.y());
-    orientation.tilt_rad = std::asin(orientation.direction.z());
+    orientation.pan_rad = elementary::atan2(-orientation.direction.x(), orientation.direction.y());
+    orientation.tilt_rad = elementary::asin(orientation.direction.z());
     orientations.push_back(orientation);
   }
   return orientations;

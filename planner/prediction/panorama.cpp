@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "mapper/integer_line.h"
+#include "sensor/elementary_functions.h"
 #include "sensor/sensor_pose.h"
 
 namespace nextview {
@@ -41,19 +42,19 @@ class Aperture {
   explicit Aperture(const RayTable& rays)
       : lines_from_sensor_(sensor_from_lines(rays.kind).transpose()) {
     const auto range = [](const std::vector<double>& sines, const std::vector<double>& cosines) {
-      double min = std::atan2(sines.back(), cosines.back());
-      double max = std::atan2(sines.front(), cosines.front());
+      double min = elementary::atan2(sines.back(), cosines.back());
+      double max = elementary::atan2(sines.front(), cosines.front());
       if (min > max) std::swap(min, max);
       const double half_pixel = 0.5 * (max - min) / static_cast<double>(sines.size() - 1);
       return std::array{min - half_pixel, max + half_pixel};
     };
     const auto [column_min, column_max] = range(rays.column_sin, rays.column_cos);
     const auto [row_min, row_max] = range(rays.row_sin, rays.row_cos);
-    sin_min_ = std::sin(column_min);
-    sin_max_ = std::sin(column_max);
+    sin_min_ = elementary::sin(column_min);
+    sin_max_ = elementary::sin(column_max);
     rows_in_front_ = std::max(-row_min, row_max) < std::numbers::pi / 2.0;
-    tan_min_ = std::tan(row_min);
-    tan_max_ = std::tan(row_max);
+    tan_min_ = elementary::tan(row_min);
+    tan_max_ = elementary::tan(row_max);
     row_min_ = row_min;
     row_max_ = row_max;
   }
@@ -69,7 +70,7 @@ class Aperture {
   bool is_in_rows(double y, double z) const {
     if (rows_in_front_) return y > 0.0 && z >= tan_min_ * y && z <= tan_max_ * y;
     constexpr double kRounding = 1e-9;  // where the rows of a whole turn meet
-    const double angle = std::atan2(z, y);
+    const double angle = elementary::atan2(z, y);
     return angle >= row_min_ - kRounding && angle <= row_max_ + kRounding;
   }
 
@@ -83,9 +84,15 @@ class Aperture {
 }  // namespace
 
 Eigen::Vector3d Panorama::direction(int cell) {
-  const auto slope = [](int i) {
-    return std::tan(std::numbers::pi / 4.0 * ((2 * i + 1.0) / kSide - 1.0));
-  };
+  static const std::array<double, kSide> slopes = [] {
+    std::array<double, kSide> result{};
+    for (int i = 0; i < kSide; ++i) {
+      result[static_cast<std::size_t>(i)] =
+          elementary::tan(std::numbers::pi / 4.0 * ((2 * i + 1.0) / kSide - 1.0));
+    }
+    return result;
+  }();
+  const auto slope = [](int i) { return slopes[static_cast<std::size_t>(i)]; };
   const int face = cell / static_cast<int>(kCellsOfFace);
   const int axis = face / 2;
   Eigen::Vector3d direction;
@@ -122,7 +129,7 @@ std::array<int, 2> cells_between(double min_slope, double max_slope) {
   static const std::array<std::int8_t, kSlopes + 1> cells = [] {
     std::array<std::int8_t, kSlopes + 1> result{};
     for (int i = 0; i <= kSlopes; ++i) {
-      const double angle = std::atan(2.0 * i / kSlopes - 1.0) / (std::numbers::pi / 4.0);
+      const double angle = elementary::atan(2.0 * i / kSlopes - 1.0) / (std::numbers::pi / 4.0);
       result[static_cast<std::size_t>(i)] = static_cast<std::int8_t>((angle + 1.0) * kSide / 2.0);
     }
     return result;

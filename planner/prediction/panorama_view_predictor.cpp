@@ -10,6 +10,7 @@
 #include <stdexcept>
 
 #include "lcmtypes/parameter_bounds.h"
+#include "sensor/elementary_functions.h"
 #include "sensor/sensor_pose.h"
 
 namespace nextview {
@@ -34,8 +35,40 @@ int cell_number(const Cell& cell) {
   return tile * 64 + quarter * 16 + cell.row % 4 * 4 + cell.column % 4;
 }
 
+/// Slopes across a face: at a cell's middle, and where it begins and ends.
+struct CellSlopes {
+  std::array<double, kSide> middle;
+  std::array<double, kSide + 1> edge;
+};
+
+const CellSlopes& cell_slopes() {
+  static const CellSlopes slopes = [] {
+    const auto slope = [](double cells) {
+      return elementary::tan(kQuarter * (2.0 * cells / kSide - 1.0));
+    };
+    CellSlopes result{};
+    for (std::size_t i = 0; i <= kSide; ++i) {
+      result.edge[i] = slope(static_cast<double>(i));
+      if (i < kSide) result.middle[i] = slope(static_cast<double>(i) + 0.5);
+    }
+    return result;
+  }();
+  return slopes;
+}
+
+// The cell a slope lies in.
+int place_of(double slope) {
+  const auto& edges = cell_slopes().edge;
+  // The C library's angle, whose last bits are the processor's, says about where that is.
+  const double about = (std::atan(slope) / kQuarter + 1.0) * kSide / 2.0;
+  auto place = static_cast<std::size_t>(std::clamp(static_cast<int>(about), 0, kSide - 1));
+  while (place + 1 < kSide && slope >= edges[place + 1]) ++place;
+  while (place > 0 && slope < edges[place]) --place;
+  return static_cast<int>(place);
+}
+
 Eigen::Vector3d cell_direction(const Cell& cell) {
-  const auto slope = [](int i) { return std::tan(kQuarter * ((2 * i + 1.0) / kSide - 1.0)); };
+  const auto slope = [](int i) { return cell_slopes().middle[static_cast<std::size_t>(i)]; };
   const int axis = cell.face / 2;
   Eigen::Vector3d direction;
   direction[axis] = cell.face % 2 == 0 ? 1.0 : -1.0;
@@ -57,12 +90,8 @@ Cell cell_of(const Eigen::Vector3d& direction) {
   int axis = 0;
   direction.cwiseAbs().maxCoeff(&axis);
   const double depth = std::abs(direction[axis]);
-  const auto place = [depth](double across) {
-    const double angle = std::atan(across / depth);
-    return std::clamp(static_cast<int>((angle / kQuarter + 1.0) * kSide / 2.0), 0, kSide - 1);
-  };
-  return {2 * axis + (direction[axis] < 0.0), place(direction[(axis + 2) % 3]),
-          place(direction[(axis + 1) % 3])};
+  return {2 * axis + (direction[axis] < 0.0), place_of(direction[(axis + 2) % 3] / depth),
+          place_of(direction[(axis + 1) % 3] / depth)};
 }
 
 std::vector<RayBundle> cube_faces(double reach) {
@@ -152,9 +181,13 @@ void PanoramaViewPredictor::append_view(const RayTable& rays, const Orientation&
   views_.push_back({begin, static_cast<std::uint32_t>(weights_.size())});
 }
 
-// Compiled once more for processors that count bits in one instruction.
-[[gnu::target_clones("popcnt", "default")]] ViewCounts PanoramaViewPredictor::count_cells(
-    const Panorama& panorama, bool any_open, const WeightWord* begin, const WeightWord* end) {
+// Compiled once more for x86-64 processors that count bits in one instruction; others all do.
+#if defined(__x86_64__)
+[[gnu::target_clones("popcnt", "default")]]
+#endif
+ViewCounts
+PanoramaViewPredictor::count_cells(const Panorama& panorama, bool any_open, const WeightWord* begin,
+                                   const WeightWord* end) {
   const auto population = [](const std::vector<std::uint64_t>& bits, const WeightWord& weight) {
     return static_cast<std::int64_t>(std::popcount(bits[weight.word] & weight.cells))
            << weight.plane;
