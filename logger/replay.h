@@ -11,7 +11,7 @@ namespace nextview {
 struct ReplayOptions {
   bool planner = false;  ///< decide every goal again, too
   /// Threads to decide with, in place of the run's; of no influence on the results.
-  std::optional<int> threads;
+  std::optional<int> threads = std::nullopt;
 };
 
 /// What came of a replay.
