@@ -90,10 +90,6 @@ std::vector<UncheckedFields> unchecked_fields(const RunRecord& run, bool planner
                          kConfig,
                          {"sensor.geometry_parameter", "sensor.range_min_m", "sensor.range_max_m",
                           "sensor.scan_duration_s"}});
-    unchecked.push_back({planner ? "shows only where a decision depends on it"
-                                 : "what a sensor of one's own says of itself is believed",
-                         kConfig,
-                         {"sensor.geometry", "sensor.columns", "sensor.rows"}});
     unchecked.push_back(
         {"held against a range image of one's own to a millionth only", kArrival, kBelievedPose});
   } else {

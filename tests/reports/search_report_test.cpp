@@ -35,6 +35,8 @@ RunRecord two_views(int tried = 2) {
   RunRecord record(RangeImages::Keep);
   auto config = example<run_config_t>();
   config.planner.quality_weight = 1.0;
+  config.sensor.columns = 3;
+  config.sensor.rows = 1;
   record.add(config);
   for (const range_image_t& part : range_image_messages(three_rays(), 1, 1, 0)) record.add(part);
   auto commit = example<commit_t>();
