@@ -1,5 +1,7 @@
 #include "base_sim/base_sim_process.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -67,10 +69,10 @@ void BaseSimProcess::receive(const goal_t& goal) {
   if (key != next_) {
     // There is no later one before this base has said what became of this one.
     if (key.view <= reached()) throw NotNow();
-    throw RejectedMessage("view " + std::to_string(key.view) + ", attempt " +
-                          std::to_string(key.attempt) + " is ahead of the run: next here is view " +
-                          std::to_string(next_.view) + ", attempt " +
-                          std::to_string(next_.attempt));
+    throw TooEarly(fmt::format("view {}, attempt {} is ahead of the run: next here is view {}, "
+                               "attempt {}",
+                               key.view, key.attempt, next_.view, next_.attempt),
+                   Channel<goal_t>::name, next_.view, 0, TooEarly::Then::Forget);
   }
   goals_[key] = goal;
 }

@@ -39,10 +39,9 @@ void RunCourse::at_view(int view) { at_view_ = std::max(at_view_, view); }
 void RunCourse::check_reached(int view, int attempt) const {
   check_fits_run(config_, view, attempt);
   if (view <= at_view_) return;
-  throw RejectedMessage(
-      fmt::format("view {} is ahead of the run, which is at view {} here: whoever "
-                  "takes the place of another process is given --catch-up",
-                  view, at_view_));
+  throw TooEarly(
+      fmt::format("view {} is ahead of the run, which is at view {} here", view, at_view_),
+      leads_on_, at_view_, 0, TooEarly::Then::Forget);
 }
 
 void RunCourse::add(const goal_t& goal) {

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <map>
+#include <string_view>
 
 #include "lcmtypes/channels.h"
 
@@ -15,9 +16,12 @@ namespace nextview {
 /// told yet, as what would have led to it has not been heard.
 class RunCourse {
  public:
-  explicit RunCourse(const run_config_t& config) : config_(config) {}
+  /// @param leads_on channel of the message that takes whoever acts on it from one view to the next
+  RunCourse(const run_config_t& config, std::string_view leads_on)
+      : config_(config), leads_on_(leads_on) {}
 
-  /// The run can have got to this view, and to none after it.
+  /// As far as is known here the run has got to this view, and to none after it. Who has taken the
+  /// place of another process may know of too few: it is led on when it hears of later ones.
   void at_view(int view);
   void add(const goal_t& goal);
   void add(const arrival_t& arrival);
@@ -36,6 +40,7 @@ class RunCourse {
   void check_reached(int view, int attempt) const;
 
   run_config_t config_;
+  std::string_view leads_on_;
   int at_view_ = 1;
   std::map<MessageKey, std::int64_t> goals_;  ///< their times
   std::map<MessageKey, Arrival> arrivals_;

@@ -31,7 +31,10 @@ std::variant<MapBuilder, PagedMapBuilder> make_builder(const run_config_t& confi
 
 MapperProcess::MapperProcess(Bus& bus, const run_config_t& config,
                              const std::optional<VoxelIndex>& window)
-    : bus_(bus), config_(config), builder_(make_builder(config, window)), course_(config) {
+    : bus_(bus),
+      config_(config),
+      builder_(make_builder(config, window)),
+      course_(config, Channel<range_image_t>::name) {
   if (const auto* builder = std::get_if<MapBuilder>(&builder_)) history_.emplace(builder->map());
   bus_.on<goal_t>([this](const goal_t& goal) { course().add(goal); });
   bus_.on<arrival_t>([this](const arrival_t& arrival) { course().add(arrival); });

@@ -21,7 +21,10 @@ PlannerProcess::PlannerProcess(Bus& bus, const run_config_t& config)
 
 PlannerProcess::PlannerProcess(Bus& bus, const run_config_t& config,
                                std::unique_ptr<ViewPlanner> planner)
-    : bus_(bus), config_(config), planner_(std::move(planner)), course_(config) {
+    : bus_(bus),
+      config_(config),
+      planner_(std::move(planner)),
+      course_(config, Channel<range_image_t>::name) {
   subscribe();
 }
 

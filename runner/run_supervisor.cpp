@@ -459,6 +459,7 @@ void RunSupervisor::check_on_processes() {
   const std::optional<Casualty> casualty = processes_->casualty();
   for (const std::string& line : processes_->take_lines()) progress_.say(line);
   if (!casualty) return;
+  take_all_there_is();  // how far the run has got is what the new process is told
   replacements_.stand_in_for(*casualty, *processes_, heard_, [this] {
     recording();
     return log_ ? &*log_ : nullptr;

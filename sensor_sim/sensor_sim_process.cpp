@@ -31,7 +31,7 @@ SensorSimProcess::SensorSimProcess(Bus& bus, const run_config_t& config,
       part_bytes_(part_bytes),
       baseline_m_(baseline_m_of(sensor_of(config))),
       real_time_(real_time),
-      course_(config) {
+      course_(config, Channel<arrival_t>::name) {
   bus_.on<goal_t>([this](const goal_t& goal) { course().add(goal); });
   bus_.on<arrival_t>([this](const arrival_t& arrival) {
     course().add(arrival);
