@@ -65,7 +65,7 @@ std::string enter_private_network() {
   const FileDescriptor before(::open("/proc/self/ns/net", O_RDONLY | O_CLOEXEC));
   if (::unshare(CLONE_NEWNET) != 0 && !unshare_as_anybody()) return std::strerror(errno);
   if (set_up_loopback()) return {};
-  const std::string why = std::string("its loopback: ") + std::strerror(errno);
+  std::string why = std::string("its loopback: ") + std::strerror(errno);
   ::setns(before.get(), CLONE_NEWNET);
   return why;
 }
