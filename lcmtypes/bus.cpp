@@ -27,6 +27,17 @@ std::string describe(const MessageKey& key) {
   return text + "part " + std::to_string(key.part);
 }
 
+/// The request for all of what parts are asked for of.
+request_t whole_of(const parts_request_t& parts) {
+  request_t whole{};
+  whole.run = parts.run;
+  whole.view = parts.view;
+  whole.attempt = parts.attempt;
+  whole.wanted_channel = parts.wanted_channel;
+  whole.asker = parts.asker;
+  return whole;
+}
+
 }  // namespace
 
 Bus::Bus(const std::string& lcm_url, std::int64_t run, std::string role)
@@ -192,13 +203,7 @@ void Bus::answer_parts(const parts_request_t& request) {
     }
   }
   if (found || !missing_) return;
-  request_t whole{};
-  whole.run = request.run;
-  whole.view = request.view;
-  whole.attempt = request.attempt;
-  whole.wanted_channel = request.wanted_channel;
-  whole.asker = request.asker;
-  missing_(whole);
+  missing_(whole_of(request));
 }
 
 void Bus::forget_settled() {
