@@ -84,16 +84,23 @@ class ClearSpace {
 
   static Kind kind_of(Label label);
   bool change(const VoxelIndex& index, Kind to);
+  /// Cells beside one another along x, as seen from a cell.
+  struct Row {
+    int step;  // to the first
+    int cells;
+  };
   template <class IsNearer>
-  std::vector<int> steps_where(int reach, const IsNearer& is_nearer) const;
+  std::vector<Row> rows_where(int reach, const IsNearer& is_nearer) const;
+  static std::size_t cells_of(const std::vector<Row>& rows);
+  void add_around(Cell cell, const std::vector<Row>& rows, std::uint32_t count);
 
   FeasibilityParameters parameters_;
   VoxelGrid grid_;
   MapWindow window_;
   VoxelIndex first_;       // of the cells
   VoxelIndex stride_;      // between cells along x, y, z
-  std::vector<int> near_;  // steps to all cells whose centre is nearer than the clearance
-  std::vector<int> body_;  // and to those whose box is nearer than the body's radius
+  std::vector<Row> near_;  // all cells whose centre is nearer than the clearance
+  std::vector<Row> body_;  // and those whose box is nearer than the body's radius
   LazyArray<Kind> kinds_;
   LazyArray<std::uint32_t> against_;
   std::vector<Cell> blocked_;

@@ -49,7 +49,7 @@ class FeasiblePositions {
     }
     // Most positions are straight ahead, and a search for all paths costs more than a prediction.
     if (paths_.leads_straight_to(position_m)) return true;
-    paths_.find_all();
+    paths_.find_as_far_as(voxel);
     return paths_.length_m(voxel) != ShortestPaths::kUnreachable;
   }
 

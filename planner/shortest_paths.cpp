@@ -51,6 +51,8 @@ void ShortestPaths::stand_at(const ClearSpace& space, const VoxelMap& map,
   present_m_ = present_m;
   for (const Cell cell : has_length_) lengths_[cell] = kNoLength;
   has_length_.clear();
+  buckets_.resize(kBuckets);
+  for (std::vector<Cell>& bucket : buckets_) bucket.clear();
   for (const Cell cell : exempted_) passage_[cell] = Passage::AsClear;
   exempted_.clear();
   if (lengths_.size() != space.cells()) {
@@ -59,8 +61,14 @@ void ShortestPaths::stand_at(const ClearSpace& space, const VoxelMap& map,
     passage_ = LazyArray(space.cells(), Passage::AsClear);
   }
   reached_.clear();
-  found_all_ = false;
   exempt_around(map, present, departure_m);
+  const Cell start = space.cell(present);
+  lengths_[start] = 0;
+  arrived_[start] = kStart;
+  has_length_.push_back(start);
+  buckets_[0].push_back(start);
+  waiting_ = 1;
+  next_length_ = 0;
 }
 
 bool ShortestPaths::may_be_at(const Eigen::Vector3d& position_m) const {
@@ -144,43 +152,46 @@ void ShortestPaths::exempt_around(const VoxelMap& map, const VoxelIndex& present
   }
 }
 
-void ShortestPaths::find_all() {
-  if (found_all_) return;
-  found_all_ = true;
-  const Cell start = space_->cell(space_->grid().voxel_of(present_m_));
+template <class IsWanted>
+void ShortestPaths::find_while(const IsWanted& is_wanted) {
   std::array<int, 26> step;
   for (std::size_t d = 0; d < step.size(); ++d) step[d] = space_->step(directions()[d].by);
-  buckets_.resize(kBuckets);
-  lengths_[start] = 0;
-  arrived_[start] = kStart;
-  buckets_[0].push_back(start);
-  std::size_t waiting = 1;
-  for (std::uint32_t length = 0; waiting > 0; ++length) {
-    std::vector<Cell>& bucket = buckets_[length % kBuckets];
+  for (; waiting_ > 0 && is_wanted(); ++next_length_) {
+    std::vector<Cell>& bucket = buckets_[next_length_ % kBuckets];
     // No step is so long that it would lead into the same bucket, nor of no length.
     for (const Cell cell : bucket) {
-      --waiting;
-      if (lengths_[cell] != length) continue;  // found again on a shorter path
+      --waiting_;
+      if (lengths_[cell] != next_length_) continue;  // found again on a shorter path
       reached_.push_back(space_->index(cell));
-      has_length_.push_back(cell);
       for (std::size_t d = 0; d < step.size(); ++d) {
         const Cell next = cell + static_cast<Cell>(step[d]);
-        const std::uint32_t next_length = length + directions()[d].length;
-        if (lengths_[next] <= next_length || !may_step(cell, next)) continue;
-        lengths_[next] = next_length;
+        const std::uint32_t length = next_length_ + directions()[d].length;
+        if (lengths_[next] <= length || !may_step(cell, next)) continue;
+        if (lengths_[next] == kNoLength) has_length_.push_back(next);
+        lengths_[next] = length;
         arrived_[next] = static_cast<std::uint8_t>(d);
-        buckets_[next_length % kBuckets].push_back(next);
-        ++waiting;
+        buckets_[length % kBuckets].push_back(next);
+        ++waiting_;
       }
     }
     bucket.clear();
   }
 }
 
+void ShortestPaths::find_all() {
+  find_while([] { return true; });
+}
+
+void ShortestPaths::find_as_far_as(const VoxelIndex& voxel) {
+  if (!space_->window().contains(voxel)) return;
+  const Cell cell = space_->cell(voxel);
+  find_while([&] { return lengths_[cell] >= next_length_; });
+}
+
 double ShortestPaths::length_m(const VoxelIndex& voxel) const {
   if (!space_->window().contains(voxel)) return kUnreachable;
   const std::uint32_t length = lengths_[space_->cell(voxel)];
-  return length == kNoLength ? kUnreachable : length * 1e-3 * space_->grid().voxel_size_m;
+  return length < next_length_ ? length * 1e-3 * space_->grid().voxel_size_m : kUnreachable;
 }
 
 bool ShortestPaths::straight_is_clear(const Eigen::Vector3d& from_m,

@@ -33,6 +33,8 @@ class ShortestPaths {
                 double departure_m);
   /// Finds the paths to all positions from where it stands, by Dijkstra's method, unless it has.
   void find_all();
+  /// Finds the shortest of them, up to that to a voxel; all when none leads there.
+  void find_as_far_as(const VoxelIndex& voxel);
   /// Both.
   void find(const ClearSpace& space, const VoxelMap& map, const Eigen::Vector3d& present_m,
             double departure_m) {
@@ -48,9 +50,9 @@ class ShortestPaths {
     return straight_is_clear(present_m_, position_m);
   }
 
-  /// The length of the path to a voxel, or kUnreachable.
+  /// The length of the path to a voxel, or kUnreachable when none has been found.
   double length_m(const VoxelIndex& voxel) const;
-  /// Voxels with a path, the present one included, nearest first.
+  /// Voxels with a path that has been found, the present one included, nearest first.
   const std::vector<VoxelIndex>& reached() const { return reached_; }
 
   /// The path to a voxel that has one: the present position, the corners, the voxel's centre. Of
@@ -89,20 +91,25 @@ class ShortestPaths {
     return may_pass(to) &&
            (passage_[to] != Passage::Departing || passage_[from] == Passage::Departing);
   }
+  /// Goes on with the search for as long as it is wanted and there is something to find.
+  template <class IsWanted>
+  void find_while(const IsWanted& is_wanted);
   std::vector<Eigen::Vector3d> waypoints_m(const VoxelIndex& voxel,
                                            const Eigen::Vector3d& end_m) const;
   bool straight_is_clear(const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m) const;
 
   const ClearSpace* space_ = nullptr;
   Eigen::Vector3d present_m_ = Eigen::Vector3d::Zero();
-  LazyArray<std::uint32_t> lengths_;  // by cell, 1/1000 voxel
-  LazyArray<std::uint8_t> arrived_;   // by cell: the direction of the last step there
-  LazyArray<Passage> passage_;        // by cell
+  // By cell, 1/1000 voxel: final below next_length_, from there on the shortest so far.
+  LazyArray<std::uint32_t> lengths_;
+  LazyArray<std::uint8_t> arrived_;  // by cell: the direction of the last step there
+  LazyArray<Passage> passage_;       // by cell
   std::vector<Cell> exempted_;
-  bool found_all_ = false;
   std::vector<VoxelIndex> reached_;
-  std::vector<Cell> has_length_;            // cells
+  std::vector<Cell> has_length_;
   std::vector<std::vector<Cell>> buckets_;  // cells still to be left, by length
+  std::size_t waiting_ = 0;                 // in the buckets
+  std::uint32_t next_length_ = 0;           // of the first bucket
 };
 
 }  // namespace nextview

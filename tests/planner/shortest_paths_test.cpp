@@ -28,6 +28,17 @@ class Paths : public ::testing::Test {
     std::ranges::fill(map.labels(), Label::Empty);
     return map;
   }
+  static VoxelMap random_map(std::mt19937& random, const VoxelIndex& present) {
+    VoxelMap map = empty_map({9, 8, 7});
+    for (Label& label : map.labels()) {
+      if (random() % 100 < 35) label = random() % 2 == 0 ? Label::Occupied : Label::Occluded;
+    }
+    map.set_label(present, Label::Empty);
+    return map;
+  }
+  static VoxelIndex voxel_of_random_map(int number) {
+    return {number % 9, number / 9 % 8, number / 72};
+  }
   static void fill(VoxelMap& map, const VoxelIndex& min, const VoxelIndex& end, Label label) {
     for (int k = min[2]; k < end[2]; ++k) {
       for (int j = min[1]; j < end[1]; ++j) {
@@ -81,16 +92,12 @@ TEST_F(Paths, AreAsShortAsBruteForceFinds) {
   int compared = 0;
   int unreachable = 0;
   for (int round = 0; round < 40; ++round) {
-    VoxelMap map = empty_map({9, 8, 7});
-    for (Label& label : map.labels()) {
-      if (random() % 100 < 35) label = random() % 2 == 0 ? Label::Occupied : Label::Occluded;
-    }
     const VoxelIndex present(4, 4, 3);
-    map.set_label(present, Label::Empty);
+    const VoxelMap map = random_map(random, present);
     find(map, present);
     const std::vector<std::uint32_t> expected = brute_force(map, *space, present);
     for (int v = 0; v < 9 * 8 * 7; ++v) {
-      const VoxelIndex voxel(v % 9, v / 9 % 8, v / 72);
+      const VoxelIndex voxel = voxel_of_random_map(v);
       const std::uint32_t length = expected[static_cast<std::size_t>(v)];
       if (length == 1u << 30) {
         EXPECT_EQ(paths.length_m(voxel), ShortestPaths::kUnreachable);
@@ -103,6 +110,32 @@ TEST_F(Paths, AreAsShortAsBruteForceFinds) {
   }
   EXPECT_GT(compared, 20000);
   EXPECT_GT(unreachable, 1000);
+}
+
+// The search goes on from where it was left, whatever was asked for before, and in the same paths.
+TEST_F(Paths, AreTheSameWhenFoundOnlyAsFarAsAsked) {
+  std::mt19937 random(2);
+  int left_unfound = 0;
+  ShortestPaths asked;
+  for (int round = 0; round < 40; ++round) {
+    const VoxelIndex present(4, 4, 3);
+    const VoxelMap map = random_map(random, present);
+    find(map, present);
+    asked.stand_at(*space, map, map.grid().center_m(present), 0.0);
+    for (int question = 0; question < 4; ++question) {
+      const VoxelIndex voxel = voxel_of_random_map(static_cast<int>(random() % (9 * 8 * 7)));
+      asked.find_as_far_as(voxel);
+      ASSERT_EQ(asked.length_m(voxel), paths.length_m(voxel));
+      if (asked.length_m(voxel) == ShortestPaths::kUnreachable) continue;
+      EXPECT_EQ(asked.waypoints_m(voxel), paths.waypoints_m(voxel));
+      left_unfound += static_cast<int>(paths.reached().size() - asked.reached().size());
+    }
+    asked.find_as_far_as({-5, 0, 0});  // in no window
+    if (round % 2 == 0) continue;      // left as it is for the next stand
+    asked.find_all();
+    EXPECT_EQ(asked.reached(), paths.reached());
+  }
+  EXPECT_GT(left_unfound, 1000);
 }
 
 TEST_F(Paths, GoStraightWhereNothingIsInTheWay) {
