@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <string>
 #include <variant>
 #include <vector>
@@ -23,6 +24,9 @@ struct TriedPosition {
 
 /// The next best view: where to go and why.
 struct Decision {
+  /// Of the positions tried no more are told: they have to fit one message.
+  static constexpr std::size_t kMostTried = 1200;
+
   SensorPose pose;
   std::vector<Eigen::Vector3d> waypoints_m;  ///< present position first, pose.position_m last
   Fitness fitness;                           ///< predicted, at the pose
@@ -31,7 +35,7 @@ struct Decision {
   double expected_gain_m2 = 0.0;  ///< new surface the view is expected to show; 0: not estimated
   double overlap = 0.0;           ///< share of it that is known already; 0: not estimated
   int iterations = 0;             ///< of the search
-  int evaluations = 0;            ///< positions tried; tried holds the first
+  int evaluations = 0;            ///< positions tried; tried holds the first kMostTried
   std::vector<TriedPosition> tried;
 };
 

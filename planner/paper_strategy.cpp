@@ -29,10 +29,6 @@ constexpr double kInfeasible = -std::numeric_limits<double>::infinity();
 /// costs little beside a prediction.
 constexpr int kInitialDraws = 200;
 
-/// Of the good views a last look finds so many are told: what was tried for a goal has to fit one
-/// message.
-constexpr std::size_t kMostTried = 1200;
-
 /// Where the simplex may try positions.
 class FeasiblePositions {
  public:
@@ -257,7 +253,7 @@ NextView PaperStrategy::last_look(const Situation& situation, StopReason otherwi
   };
   Decision decision;
   for (const LastLook::View& view : last_look_.good()) {
-    if (decision.tried.size() == kMostTried) break;
+    if (decision.tried.size() == Decision::kMostTried) break;
     const Orientation& orientation = evaluator.orientations()[view.best.orientation];
     decision.tried.push_back({position_m(view.voxel), orientation.pan_rad, orientation.tilt_rad,
                               view.best.fitness.value});

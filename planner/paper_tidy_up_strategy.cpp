@@ -18,9 +18,6 @@ namespace nextview {
 namespace {
 
 constexpr double kCoarsest_m = 0.4;  // spacing of positions
-/// Of the views computed so many are told, at most: what was tried for a goal has to fit one
-/// message.
-constexpr std::size_t kMostTried = 1200;
 
 double new_area_m2(std::span<const ViewFacts> views) {
   double area_m2 = 0.0;
@@ -193,7 +190,7 @@ Decision PaperTidyUpStrategy::decision(const Situation& situation,
       views.size(), chosen.in_sight.size(), chosen.path_m);
   decision.evaluations = static_cast<int>(views.size());
   for (const HoleView& view : views) {
-    if (decision.tried.size() == kMostTried) break;
+    if (decision.tried.size() == Decision::kMostTried) break;
     decision.tried.push_back(
         {map.grid().center_m(view.voxel), view.pan_rad, view.tilt_rad, view.score / chosen.score});
   }

@@ -14,9 +14,6 @@ namespace {
 
 /// With fewer positions than this their spacing is halved.
 constexpr std::size_t kFewPositions = 40;
-/// Of the positions judged so many are told, at most: what was tried for a goal has to fit one
-/// message.
-constexpr std::size_t kMostTried = 1200;
 // Of what no message and no option says.
 constexpr Bounds kUnknownWeight{"unknown_weight", 0.0, 1.0};
 constexpr Bounds kImprovementWeight{"improvement_weight", 0.0, 10.0};
@@ -213,7 +210,7 @@ Decision SurfaceStrategy::decision(const SurfaceGain::Known& known,
   decision.overlap = chosen.view.overlap;
   decision.reason = in_words(best, positions);
   for (const CandidateView& tried : candidates_.judged()) {
-    if (decision.tried.size() == kMostTried) break;
+    if (decision.tried.size() == Decision::kMostTried) break;
     const Orientation& direction = gain_.orientations()[tried.view.orientation];
     decision.tried.push_back({clear_->grid().center_m(tried.voxel), direction.pan_rad,
                               direction.tilt_rad, tried.score / std::max(chosen.score, 1e-9)});

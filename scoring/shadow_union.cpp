@@ -7,7 +7,7 @@ namespace nextview {
 namespace {
 
 /// A union that takes more is cheaper shown in parts, for smaller boxes.
-constexpr std::size_t kMostTriangles = 64;
+constexpr std::size_t kMostUsed = 64;
 constexpr std::size_t kMostPieces = 64;
 constexpr std::size_t kMostStrips = 16;
 
@@ -95,7 +95,7 @@ SpacePiece ShadowUnion::piece_before(const Polygon& polygon, const BoxPyramid::P
 /// Cuts shadows out until nothing is left but strips.
 bool ShadowUnion::cut_all(const BoxPyramid& pyramid) {
   while (!pieces_.empty()) {
-    if (too_many_corners_ || pieces_.size() > kMostPieces || used_.size() >= kMostTriangles ||
+    if (too_many_corners_ || pieces_.size() > kMostPieces || used_.size() >= kMostUsed ||
         strips_.size() > kMostStrips) {
       return false;
     }

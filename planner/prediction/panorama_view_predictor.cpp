@@ -17,7 +17,7 @@ namespace nextview {
 
 namespace {
 
-constexpr int kSide = PanoramaViewPredictor::kFaceSide;
+constexpr int kFaceSide = PanoramaViewPredictor::kFaceSide;
 constexpr double kQuarter = std::numbers::pi / 4.0;
 
 // A cell of the panorama: a face of the cube (2 axis + (sign < 0)) and a row and column on it.
@@ -30,26 +30,26 @@ struct Cell {
 // Cells are numbered in tiles of 8 x 8, a word each, and in quarters of 4 x 4 inside, so that a
 // word's cells, and a vector's rays, are neighbours.
 int cell_number(const Cell& cell) {
-  const int tile = (cell.face * (kSide / 8) + cell.row / 8) * (kSide / 8) + cell.column / 8;
+  const int tile = (cell.face * (kFaceSide / 8) + cell.row / 8) * (kFaceSide / 8) + cell.column / 8;
   const int quarter = cell.row % 8 / 4 * 2 + cell.column % 8 / 4;
   return tile * 64 + quarter * 16 + cell.row % 4 * 4 + cell.column % 4;
 }
 
 /// Slopes across a face: at a cell's middle, and where it begins and ends.
 struct CellSlopes {
-  std::array<double, kSide> middle;
-  std::array<double, kSide + 1> edge;
+  std::array<double, kFaceSide> middle;
+  std::array<double, kFaceSide + 1> edge;
 };
 
 const CellSlopes& cell_slopes() {
   static const CellSlopes slopes = [] {
     const auto slope = [](double cells) {
-      return elementary::tan(kQuarter * (2.0 * cells / kSide - 1.0));
+      return elementary::tan(kQuarter * (2.0 * cells / kFaceSide - 1.0));
     };
     CellSlopes result{};
-    for (std::size_t i = 0; i <= kSide; ++i) {
+    for (std::size_t i = 0; i <= kFaceSide; ++i) {
       result.edge[i] = slope(static_cast<double>(i));
-      if (i < kSide) result.middle[i] = slope(static_cast<double>(i) + 0.5);
+      if (i < kFaceSide) result.middle[i] = slope(static_cast<double>(i) + 0.5);
     }
     return result;
   }();
@@ -60,9 +60,9 @@ const CellSlopes& cell_slopes() {
 int place_of(double slope) {
   const auto& edges = cell_slopes().edge;
   // The C library's angle, whose last bits are the processor's, says about where that is.
-  const double about = (std::atan(slope) / kQuarter + 1.0) * kSide / 2.0;
-  auto place = static_cast<std::size_t>(std::clamp(static_cast<int>(about), 0, kSide - 1));
-  while (place + 1 < kSide && slope >= edges[place + 1]) ++place;
+  const double about = (std::atan(slope) / kQuarter + 1.0) * kFaceSide / 2.0;
+  auto place = static_cast<std::size_t>(std::clamp(static_cast<int>(about), 0, kFaceSide - 1));
+  while (place + 1 < kFaceSide && slope >= edges[place + 1]) ++place;
   while (place > 0 && slope < edges[place]) --place;
   return static_cast<int>(place);
 }
@@ -81,9 +81,9 @@ Eigen::Vector3d cell_direction(const Cell& cell) {
 Cell cell_numbered(int number) {
   const int tile = number / 64;
   const int quarter = number % 64 / 16;
-  const int row = tile / (kSide / 8) % (kSide / 8) * 8 + quarter / 2 * 4 + number % 16 / 4;
-  const int column = tile % (kSide / 8) * 8 + quarter % 2 * 4 + number % 4;
-  return {number / (kSide * kSide), row, column};
+  const int row = tile / (kFaceSide / 8) % (kFaceSide / 8) * 8 + quarter / 2 * 4 + number % 16 / 4;
+  const int column = tile % (kFaceSide / 8) * 8 + quarter % 2 * 4 + number % 4;
+  return {number / (kFaceSide * kFaceSide), row, column};
 }
 
 Cell cell_of(const Eigen::Vector3d& direction) {
@@ -100,13 +100,13 @@ std::vector<RayBundle> cube_faces(double reach) {
     RayBundle& bundle = faces[static_cast<std::size_t>(face)];
     bundle.driving_axis = face / 2;
     bundle.direction = face % 2 == 0 ? 1 : -1;
-    constexpr auto kRays = static_cast<std::size_t>(kSide * kSide);
+    constexpr auto kRays = static_cast<std::size_t>(kFaceSide * kFaceSide);
     bundle.packets.resize(kRays / RayBundle::kPacketRays);
     bundle.group.resize(kRays / RayBundle::kPacketRays);
-    for (int row = 0; row < kSide; ++row) {
-      for (int column = 0; column < kSide; ++column) {
+    for (int row = 0; row < kFaceSide; ++row) {
+      for (int column = 0; column < kFaceSide; ++column) {
         const Cell cell{face, row, column};
-        const auto ray = static_cast<std::size_t>(cell_number(cell) - face * kSide * kSide);
+        const auto ray = static_cast<std::size_t>(cell_number(cell) - face * kFaceSide * kFaceSide);
         const IntegerLine line = line_along(VoxelIndex::Zero(), cell_direction(cell), reach);
         // Rounding can make a cell at the very rim a tie between two driving axes, but no other
         // axis ever advances more than the face's.
@@ -253,7 +253,7 @@ void PanoramaViewPredictor::count(std::span<const std::size_t> which,
 
 void PanoramaViewPredictor::cast_face(const FreeSpaceField& field, std::size_t face,
                                       const VoxelIndex& sensor) {
-  const std::size_t word = face * kSide * kSide / 64;
+  const std::size_t word = face * kFaceSide * kFaceSide / 64;
   PacketQueue packets;
   packets.refill(faces_[face].packets.size(), faces_[face].packets.size());
   RayOutcomes outcomes;
@@ -266,8 +266,8 @@ void PanoramaViewPredictor::cast_face(const FreeSpaceField& field, std::size_t f
 }
 
 void PanoramaViewPredictor::look_up(const SurfaceTable& surfaces, std::size_t face) {
-  const std::size_t first = face * kSide * kSide;
-  for (std::size_t cell = first; cell < first + kSide * kSide; ++cell) {
+  const std::size_t first = face * kFaceSide * kFaceSide;
+  for (std::size_t cell = first; cell < first + kFaceSide * kFaceSide; ++cell) {
     if (panorama_.occupied_at[cell] < 0) continue;
     const auto offset = static_cast<std::size_t>(panorama_.occupied_at[cell]);
     const std::uint32_t surface = surfaces.number_at(offset);
