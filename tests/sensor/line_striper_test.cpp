@@ -3,17 +3,12 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
-
-#include <numbers>
 #include <stdexcept>
+
+#include "tests/sensor/pixel_rays.h"
 
 namespace nextview {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
-
-// The ray of a pixel of the picture: its columns, the stripes, are the rows of the table.
-Eigen::Vector3d ray_at(const RayTable& rays, int u, int v) { return rays.ray(v, u); }
 
 TEST(LineStriper, StripesLieAtEvenAnglesAndTheirPointsAtEvenTangents) {
   const RayTable rays = make_ray_table(LineStriper{5, 5, 80.0 * kDegree, 90.0 * kDegree, 0.1});

@@ -3,14 +3,14 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
-#include <numbers>
+
+#include "tests/sensor/pixel_rays.h"
 
 namespace nextview {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 const fs::path kCatalogue = fs::path(NEXTVIEW_SOURCE_DIR) / "sensor/catalogue";
 
 // A file of one test, removed with it.

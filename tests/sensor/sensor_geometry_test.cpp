@@ -10,11 +10,10 @@
 
 #include "sensor/range_image.h"
 #include "sensor/sensor_pose.h"
+#include "tests/sensor/pixel_rays.h"
 
 namespace nextview {
 namespace {
-
-constexpr double kDegree = std::numbers::pi / 180.0;
 
 TEST(TiltedLineScan, PaperSensorHasAVerticalApertureOf39Degrees) {
   const TiltedLineScan sensor = TiltedLineScan::paper();

@@ -6,14 +6,12 @@
 #include <numbers>
 #include <stdexcept>
 
+#include "tests/sensor/pixel_rays.h"
+
 namespace nextview {
 namespace {
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kDegree = kPi / 180.0;
-
-// The ray of a pixel of the picture: its columns are the rows of the table.
-Eigen::Vector3d ray_at(const RayTable& rays, int u, int v) { return rays.ray(v, u); }
 
 TEST(SphericalScanner, RaysAreRotationsOfTheOpticalAxis) {
   const SphericalScanner sensor{7, 5, 240.0 * kDegree, 100.0 * kDegree};

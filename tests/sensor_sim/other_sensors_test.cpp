@@ -13,8 +13,8 @@
 namespace nextview {
 namespace {
 
-constexpr double kPi = std::numbers::pi;
-const SphericalScanner kPanorama{36, 11, 2.0 * kPi, kPi * 5.0 / 9.0};
+using std::numbers::pi;
+const SphericalScanner kPanorama{36, 11, 2.0 * pi, pi * 5.0 / 9.0};
 
 RangeImage scan_of(const Scene& scene, const SensorGeometry& sensor, const SensorPose& pose,
                    const RangeLimits& limits = {}) {
@@ -30,9 +30,9 @@ float range_of_picture(const RangeImage& image, int u, int v) {
 TEST(OtherSensors, APanoramaOfABoxRoomWorkedByHand) {
   const Scene scene(load_mesh(kDataFolder / "room.obj"));
   // Four columns a quarter turn apart, the first of them 135 degrees to the left.
-  const SphericalScanner sensor{4, 3, 2.0 * kPi, kPi / 2.0};
+  const SphericalScanner sensor{4, 3, 2.0 * pi, pi / 2.0};
   // Turned by 45 degrees to the right, they look left, ahead, right and back.
-  const SensorPose pose{{0.5, 0.0, 1.2}, -kPi / 4.0, 0.0};
+  const SensorPose pose{{0.5, 0.0, 1.2}, -pi / 4.0, 0.0};
   const RangeImage image = scan_of(scene, sensor, pose);
   EXPECT_FLOAT_EQ(range_of_picture(image, 0, 1), 2.5F);  // left: 90 degrees
   EXPECT_FLOAT_EQ(range_of_picture(image, 1, 1), 2.0F);  // ahead
@@ -54,7 +54,7 @@ TEST(OtherSensors, EveryRangeIsThatOfEveryTriangle) {
     const Scene scene(mesh);
     const BruteForceScene plain(mesh);
     const SensorPose pose{random_point(random, 0.5), 6.0 * random.uniform(),
-                          kPi * (random.uniform() - 0.5)};
+                          pi * (random.uniform() - 0.5)};
     const LineStriper striper{9, 14, 2.0, 1.2, 0.0};
     for (const SensorGeometry& sensor : {SensorGeometry(kPanorama), SensorGeometry(striper)}) {
       const RangeImage image = scan_of(scene, sensor, pose, {0.0, 100.0});

@@ -28,7 +28,7 @@ std::optional<SensorPose> go_on(ViewPlanner& planner, Base& base) {
 RunSetup room_setup(const std::string& room, const std::string& strategy, std::int64_t seed,
                     int views) {
   RunOptions options;
-  options.scenes_folder = std::string(NEXTVIEW_SOURCE_DIR) + "/scenes";
+  options.scenes_folder = NEXTVIEW_SOURCE_DIR "/scenes";
   options.scene = room;
   options.strategy = strategy;
   options.seed = seed;

@@ -10,8 +10,6 @@
 namespace nextview {
 namespace {
 
-constexpr int kViews = 12;
-
 std::string exactly(double value) { return fmt::format("{}", value); }
 
 /// The words that follow a text in what a program says, up to a separator.
@@ -21,6 +19,7 @@ std::string after(const std::string& output, const std::string& text, char separ
 }
 
 TEST(OwnRobot, RecoversWhatTheSimulatedOneDoes) {
+  constexpr int kViews = 12;
   const TemporaryFolder folder;
   ASSERT_EQ(run_views(folder / "simulated", kViews).status, 0);
 

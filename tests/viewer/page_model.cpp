@@ -1,20 +1,8 @@
 #include "tests/viewer/page_model.h"
 
-#include <cstring>
-
 #include "viewer/surface_blocks.h"
 
 namespace nextview {
-namespace {
-
-template <class Number>
-Number number_at(const std::vector<std::uint8_t>& bytes, std::size_t at) {
-  Number number;
-  std::memcpy(&number, bytes.data() + at, sizeof number);
-  return number;
-}
-
-}  // namespace
 
 void PageModel::take(const Outbox::Message& message) {
   ++messages;

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -10,6 +12,14 @@
 #include "viewer/outbox.h"
 
 namespace nextview {
+
+/// As the page reads its numbers: little-endian.
+template <class Number>
+Number number_at(const std::vector<std::uint8_t>& bytes, std::size_t at) {
+  Number number;
+  std::memcpy(&number, bytes.data() + at, sizeof number);
+  return number;
+}
 
 /// What a page holds of one run after the messages it was sent.
 class PageModel {

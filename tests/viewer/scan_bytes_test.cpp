@@ -6,15 +6,10 @@
 #include <cstring>
 #include <limits>
 
+#include "tests/viewer/page_model.h"
+
 namespace nextview {
 namespace {
-
-template <class Number>
-Number number_at(const std::vector<std::uint8_t>& bytes, std::size_t at) {
-  Number number;
-  std::memcpy(&number, bytes.data() + at, sizeof number);
-  return number;
-}
 
 Eigen::Vector3d vector_at(const std::vector<std::uint8_t>& bytes, std::size_t at) {
   return {number_at<float>(bytes, at), number_at<float>(bytes, at + 4),
