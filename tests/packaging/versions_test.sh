@@ -15,10 +15,10 @@ version=$("$build/bin/nextview" --version)
 version=${version#nextview }
 [[ $version =~ ^[0-9]+\.[0-9]+(\ [0-9a-f]{12}\+?)?$ ]] || fail "nextview --version: $version"
 
-# What is part of the tests only.
+# What is part of the tests only, or a benchmark, which a build of the rest leaves as it was.
 is_of_tests() {
   case "$1" in
-    *_test | fuzz_cases_* | vector_clones_* | noise_* | driver | forgetful_recorder) true ;;
+    nextview_bench* | *_test | fuzz_cases_* | vector_clones_* | noise_* | driver | forgetful_recorder) true ;;
     *) false ;;
   esac
 }
