@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-#include "lcmtypes/lcm_transport.h"
+#include "lcmtypes/signed_transport.h"
 
 namespace nextview {
 namespace {
@@ -40,8 +40,9 @@ request_t whole_of(const parts_request_t& parts) {
 
 }  // namespace
 
-Bus::Bus(const std::string& lcm_url, std::int64_t run, std::string role)
-    : Bus(std::make_unique<LcmTransport>(lcm_url), run, std::move(role)) {}
+Bus::Bus(const std::string& lcm_url, std::int64_t run, std::string role,
+         const std::optional<RunKey>& key)
+    : Bus(transport_on(lcm_url, key), run, std::move(role)) {}
 
 Bus::Bus(std::unique_ptr<Transport> transport, std::int64_t run, std::string role)
     : transport_(std::move(transport)),

@@ -21,6 +21,7 @@
 #include "lcmtypes/heard_messages.h"
 #include "lcmtypes/rejected_message.h"
 #include "lcmtypes/response_time.h"
+#include "lcmtypes/run_key.h"
 #include "lcmtypes/transport.h"
 #include "lcmtypes/wanted_messages.h"
 
@@ -58,8 +59,10 @@ class Bus {
   /// Joins a run over LCM.
   /// @param lcm_url as LCM has it; empty: LCM_DEFAULT_URL, else LCM's default
   /// @param role who speaks, for requests: sensor_sim, base_sim, ...
+  /// @param key of the run, without whose signature no message is taken; nothing: it has none
   /// @throws BusError when the bus does not work here, saying what to type; never hangs
-  Bus(const std::string& lcm_url, std::int64_t run, std::string role);
+  Bus(const std::string& lcm_url, std::int64_t run, std::string role,
+      const std::optional<RunKey>& key = std::nullopt);
   /// Joins a run over any transport.
   Bus(std::unique_ptr<Transport> transport, std::int64_t run, std::string role);
   // Receivers point back at the bus.

@@ -41,6 +41,7 @@ int run_bus_process(int argc, char** argv, const std::string& role, const std::s
   CLI::App app{about};
   std::string lcm_url;
   std::int64_t run = 0;
+  std::string key_file;
   int catch_up = 0;
   app.add_option("--lcm-url", lcm_url,
                  "LCM URL of the run, such as udpm://239.255.76.67:7667?ttl=0; without it "
@@ -50,6 +51,8 @@ int run_bus_process(int argc, char** argv, const std::string& role, const std::s
   app.add_option("--catch-up", catch_up,
                  "Take the place of a process that has ended after the run had got to this view: "
                  "what has been said up to there is asked for at once");
+  app.add_option("--key-file", key_file,
+                 "The run's key: what is said is signed by it, and what is heard must be");
   if (add_options) add_options(app);
   const std::string program = std::filesystem::path(argv[0]).filename();
   app.set_version_flag("--version", program + " " + std::string(program_version()));
@@ -62,7 +65,9 @@ int run_bus_process(int argc, char** argv, const std::string& role, const std::s
 
   std::optional<Bus> bus;
   try {
-    bus.emplace(lcm_url, run, role);
+    std::optional<RunKey> key;
+    if (!key_file.empty()) key = RunKey::read(key_file);
+    bus.emplace(lcm_url, run, role, key);
     serve(*bus, make, end_requested, catch_up);
     return 0;
   } catch (const std::exception& error) {

@@ -31,15 +31,21 @@ struct MessageLayout {
 /// @return empty when the generated decoder can be let loose on the bytes, else the reason
 std::string check_layout(const MessageLayout& layout, std::span<const std::uint8_t> bytes);
 
+/// check_layout of a type.
+template <class Message>
+std::string wrong_layout(std::span<const std::uint8_t> bytes) {
+  using Table = Channel<Message>;
+  return check_layout({Message::getHash(), Table::lengths,
+                       static_cast<std::size_t>(Message{}.getEncodedSize()), Table::strings},
+                      bytes);
+}
+
 /// The one way from received or logged bytes to a message. Allocates no more than a small multiple
 /// of what was received, whatever the bytes say, and never throws on bad bytes.
 template <class Message>
 Decoded<Message> decode_checked(std::span<const std::uint8_t> bytes) {
-  using Table = Channel<Message>;
-  const MessageLayout layout{Message::getHash(), Table::lengths,
-                             static_cast<std::size_t>(Message{}.getEncodedSize()), Table::strings};
   Decoded<Message> result;
-  result.reason = check_layout(layout, bytes);
+  result.reason = wrong_layout<Message>(bytes);
   if (!result.reason.empty()) return result;
   Message message{};
   const int size = static_cast<int>(bytes.size());

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string_view>
 #include <vector>
@@ -15,8 +16,11 @@ namespace nextview {
 /// them is.
 class LogAnswers {
  public:
+  /// @param key without whose signature no message is taken
   /// @throws LogError when the log cannot be opened
-  explicit LogAnswers(const std::filesystem::path& log) : reader_(log) {}
+  explicit LogAnswers(const std::filesystem::path& log,
+                      const std::optional<RunKey>& key = std::nullopt)
+      : reader_(log, key) {}
 
   /// All of the next view lies between these two positions of the log.
   void add_view(std::int64_t begin, std::int64_t end) { places_.push_back({begin, end}); }
@@ -54,8 +58,8 @@ void LogAnswers::tell(std::string_view channel, int view, int attempt, std::int6
       while (reader_.position() < place.end) {
         const auto message = reader_.next();
         if (!message) return;
-        if (message->channel != channel) continue;
-        const Decoded<Message> decoded = decode_checked<Message>(message->bytes);
+        if (message->channel != channel || !message->is_authentic()) continue;
+        const Decoded<Message> decoded = decode_checked<Message>(message->message());
         if (!decoded.message || decoded.message->run != run) continue;
         const MessageKey key = key_of(*decoded.message);
         if (key.view != view || (attempt != 0 && key.attempt != attempt)) continue;

@@ -63,7 +63,8 @@ void append(std::string& list, std::string_view item) {
 
 void LogContents::add(const LoggedMessage& event) {
   if (event.channel == kSeal) {
-    seals_.push_back({numbers_.size(), event.bytes});
+    const auto seal = event.message();
+    if (event.is_authentic()) seals_.push_back({numbers_.size(), {seal.begin(), seal.end()}});
   } else if (event.channel.starts_with(kOurs)) {
     const XXH128_hash_t hash = XXH3_128bits(event.bytes.data(), event.bytes.size());
     messages_[event.channel].emplace_back(hash.high64, hash.low64);

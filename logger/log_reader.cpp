@@ -129,7 +129,8 @@ struct LogReader::File {
   std::int64_t window_start = 0;
 };
 
-LogReader::LogReader(const std::filesystem::path& file) {
+LogReader::LogReader(const std::filesystem::path& file, const std::optional<RunKey>& key)
+    : key_(key) {
   std::error_code error;
   if (!std::filesystem::is_regular_file(file, error)) {
     throw LogError(file.string() + ": no such file");
@@ -155,10 +156,12 @@ std::optional<LoggedMessage> LogReader::next() {
   const auto channel = bytes.first(header.channel_bytes);
   const auto data = bytes.subspan(header.channel_bytes);
   file_->end_of_last = *start + static_cast<std::int64_t>(header.event_bytes());
-  return LoggedMessage{std::string(channel.begin(), channel.end()),
-                       {data.begin(), data.end()},
-                       header.number,
-                       header.received_us};
+  LoggedMessage message{std::string(channel.begin(), channel.end()),
+                        {data.begin(), data.end()},
+                        header.number,
+                        header.received_us};
+  message.signature = signature_of(message.channel, message.bytes, key_);
+  return message;
 }
 
 std::int64_t LogReader::position() const { return file_->end_of_last; }

@@ -4,9 +4,12 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <vector>
+
+#include "logger/signature.h"
 
 namespace nextview {
 
@@ -22,6 +25,15 @@ struct LoggedMessage {
   std::vector<std::uint8_t> bytes;
   std::uint64_t number = 0;      ///< of the event, by whoever has recorded it
   std::int64_t received_us = 0;  ///< by the recorder's clock; nothing of a run depends on it
+  Signature signature = Signature::None;
+
+  /// Whether it is taken: with a key only what bears its signature.
+  bool is_authentic() const { return signature != Signature::Wrong; }
+  /// What was published, without its signature.
+  std::span<const std::uint8_t> message() const {
+    const bool is_signed = signature == Signature::Unchecked || signature == Signature::Right;
+    return std::span(bytes).first(bytes.size() - (is_signed ? RunKey::kSignatureBytes : 0));
+  }
 };
 
 /// Bytes of a log in which no whole event stands.
@@ -35,13 +47,17 @@ struct DamagedBytes {
 /// says, no more is allocated than there is.
 class LogReader {
  public:
+  /// @param key of the run, by which messages must be signed to be authentic; nothing: signatures
+  ///        are not checked
   /// @throws LogError when there is no such file or it cannot be opened
-  explicit LogReader(const std::filesystem::path& file);
+  explicit LogReader(const std::filesystem::path& file,
+                     const std::optional<RunKey>& key = std::nullopt);
   ~LogReader();
   LogReader(LogReader&&) noexcept;
   LogReader& operator=(LogReader&&) noexcept;
 
   const std::filesystem::path& file() const;
+  const std::optional<RunKey>& key() const { return key_; }
 
   /// The next message; nothing at the end, where it may be called again when the file has grown.
   std::optional<LoggedMessage> next();
@@ -65,6 +81,7 @@ class LogReader {
  private:
   struct File;
   std::unique_ptr<File> file_;
+  std::optional<RunKey> key_;
 };
 
 }  // namespace nextview

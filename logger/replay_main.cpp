@@ -59,10 +59,10 @@ std::vector<std::filesystem::path> files_of(const std::vector<std::string>& argu
 }
 
 int replay_run(const std::vector<std::string>& arguments, std::optional<std::int64_t> run,
-               const nextview::ReplayOptions& options) {
+               const std::optional<nextview::RunKey>& key, const nextview::ReplayOptions& options) {
   const std::vector<std::filesystem::path> files = files_of(arguments);
   const std::filesystem::path& file = files.front();
-  nextview::RunLog log(files, run, nextview::RangeImages::Keep);
+  nextview::RunLog log(files, run, nextview::RangeImages::Keep, key);
   log.read_on();
   show_events(log);
   show(std::cerr, "left out: ", log.dropped());
@@ -75,6 +75,9 @@ int replay_run(const std::vector<std::string>& arguments, std::optional<std::int
   show(std::cerr, "nextview_replay: " + file.string() + ": ", report.differences);
   show(std::cerr, "missing: ", report.missing);
   show(std::cout, "", report.remarks);
+  if (const std::int64_t some = log.counters().signatures_unchecked; some > 0) {
+    std::cout << some << " messages are signed, which was not checked: --key-file names the key\n";
+  }
   const bool all = report.differences.empty();
   std::cout << report.views << " views replayed"
             << (all ? ", every map as it was in the run" : " to the map they had in the run");
@@ -113,6 +116,9 @@ int main(int argc, char** argv) {
                  "Threads to decide with, in place of the run's; the result does not depend on it")
       ->needs(decide);
   app.add_option("--run", run, "The run to replay, when the log holds several");
+  std::string key_file;
+  app.add_option("--key-file", key_file,
+                 "The key of a run that had one: messages that it has not signed are left out");
   app.set_version_flag("--version", "nextview_replay " + std::string(nextview::program_version()));
   app.footer(
       "Exit status: 0 when all of it agrees; 1 when something differs, or the log cannot be read;\n"
@@ -120,7 +126,9 @@ int main(int argc, char** argv) {
       "differs, with its fields, or is missing.");
   CLI11_PARSE(app, argc, argv);
   try {
-    return replay_run(folders, run, options);
+    std::optional<nextview::RunKey> key;
+    if (!key_file.empty()) key = nextview::RunKey::read(key_file);
+    return replay_run(folders, run, key, options);
   } catch (const std::exception& error) {
     std::cerr << "nextview_replay: " << error.what() << std::endl;
     return 1;

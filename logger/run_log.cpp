@@ -10,13 +10,13 @@
 namespace nextview {
 
 RunLog::RunLog(const std::filesystem::path& file, std::optional<std::int64_t> run,
-               RangeImages range_images)
-    : RunLog(std::vector{file}, run, range_images) {}
+               RangeImages range_images, const std::optional<RunKey>& key)
+    : RunLog(std::vector{file}, run, range_images, key) {}
 
 RunLog::RunLog(const std::vector<std::filesystem::path>& files, std::optional<std::int64_t> run,
-               RangeImages range_images)
+               RangeImages range_images, const std::optional<RunKey>& key)
     : run_(run), record_(range_images) {
-  for (const std::filesystem::path& file : files) readers_.emplace_back(file);
+  for (const std::filesystem::path& file : files) readers_.emplace_back(file, key);
 }
 
 std::optional<LoggedMessage> RunLog::next() {
@@ -85,7 +85,11 @@ void RunLog::take(const LoggedMessage& message) {
 
 template <class Message>
 void RunLog::take_as(const LoggedMessage& message) {
-  const Decoded<Message> decoded = decode_checked<Message>(message.bytes);
+  if (!message.is_authentic()) {
+    dropped_.push_back("a message on " + message.channel + " is not signed by the run's key");
+    return;
+  }
+  const Decoded<Message> decoded = decode_checked<Message>(message.message());
   if (!decoded.message) {
     dropped_.push_back("a message on " + message.channel + " cannot be right: " + decoded.reason);
     return;
@@ -103,6 +107,7 @@ void RunLog::take_as(const LoggedMessage& message) {
     return;
   }
   ++counters_.ours;
+  if (message.signature == Signature::Unchecked) ++counters_.signatures_unchecked;
   if constexpr (Channel<Message>::answered) {
     const MessageKey key = key_of(*decoded.message);
     if constexpr (std::is_same_v<Message, range_image_t>) {

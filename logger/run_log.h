@@ -24,6 +24,7 @@ struct LogCounters {
   std::int64_t foreign = 0;        ///< of other runs, or on channels that are not ours
   std::int64_t of_other_runs = 0;  ///< of the foreign ones, on channels that are ours
   std::int64_t repeated = 0;       ///< the same again, which is how lost messages are made good
+  std::int64_t signatures_unchecked = 0;  ///< messages with one, without a key
 };
 
 /// Reads the messages of one run out of its log, through the same decode-and-validate path as the
@@ -31,15 +32,17 @@ struct LogCounters {
 class RunLog {
  public:
   /// @param run only messages of this run are taken; nothing: of the first one with a configuration
+  /// @param key without whose signature no message is taken; nothing: signatures are not checked
   /// @throws LogError when the file cannot be opened
   RunLog(const std::filesystem::path& file, std::optional<std::int64_t> run,
-         RangeImages range_images);
+         RangeImages range_images, const std::optional<RunKey>& key = std::nullopt);
   /// @param files of a log that was split or rotated, in the order in which they were recorded
   RunLog(const std::vector<std::filesystem::path>& files, std::optional<std::int64_t> run,
-         RangeImages range_images);
+         RangeImages range_images, const std::optional<RunKey>& key = std::nullopt);
 
   /// The file, or the last of several.
   const std::filesystem::path& file() const { return readers_.back().file(); }
+  const std::optional<RunKey>& key() const { return readers_.back().key(); }
 
   /// Takes in what has been written since the last call.
   void read_on();

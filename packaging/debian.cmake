@@ -16,7 +16,7 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS liblcm-bin)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME nextview-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "libeigen3-dev, libfmt-dev, libhwy-dev, libxxhash-dev, nlohmann-json3-dev, pkg-config")
+    "libeigen3-dev, libfmt-dev, libhwy-dev, libsodium-dev, libxxhash-dev, nlohmann-json3-dev, pkg-config")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS
     "liblcm-dev, libglib2.0-dev, libcli11-dev, libassimp-dev, libembree-dev, coinor-libclp-dev, libcairo2-dev")
 include(CPack)
