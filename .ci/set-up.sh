@@ -140,8 +140,26 @@ url_of_run() {
   { pgrep --list-full lcm-logger || true; } | sed -n '/--lcm-url=/{s/.*--lcm-url=\([^ ]*\).*/\1/p;q}'
 }
 
-# start_java CLASS [ARGUMENT...]: a window of LCM. Debian's own scripts ask Java for an option it no longer has.
+# command_to_join LCM_URL: a line a word, what goes before a command that is to hear this run, if it is in a network of
+# its own.
+command_to_join() {
+  local recorder
+  recorder=$(pgrep --list-full lcm-logger | grep -F -- "--lcm-url=$1" | sed 's/ .*//;q') || true
+  [ -n "$recorder" ] || return 0
+  [ "$(readlink "/proc/$recorder/ns/net")" != "$(readlink /proc/self/ns/net)" ] || return 0
+  printf '%s\n' nsenter --target "$recorder" --net
+  [ "$(id -u)" = 0 ] || printf '%s\n' --user --preserve-credentials
+}
+
+# start_java [BEFORE...] -- CLASS [ARGUMENT...]: a window of LCM. Debian's own scripts ask Java for an option it no
+# longer has.
 start_java() {
-  CLASSPATH="$build/nextview_types.jar" exec java -Djava.net.preferIPv4Stack=true -ea \
+  local before=()
+  while [ "$1" != -- ]; do
+    before+=("$1")
+    shift
+  done
+  shift
+  CLASSPATH="$build/nextview_types.jar" exec "${before[@]}" java -Djava.net.preferIPv4Stack=true -ea \
     -cp "/usr/share/java/lcm.jar:/usr/share/java/jchart2d.jar:$build/nextview_types.jar" "$@"
 }

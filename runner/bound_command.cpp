@@ -7,8 +7,11 @@ namespace nextview {
 namespace {
 
 /// Options of what a run leaves and shows, which the bounds have nothing to do with.
-const std::set<std::string> kOfTheRunAlone = {"--view", "--paused", "--private", "--real-time",
-                                              "--verbose"};
+const std::set<std::string> kOfTheRunAlone = {
+    "--view", "--paused", "--private", "--no-private", "--real-time", "--verbose", "--no-coverage"};
+/// Such as a value follows.
+const std::set<std::string> kOfTheRunAloneWithValue = {"--out", "--runs", "--key-file", "--lcm-url",
+                                                       "--patience"};
 
 }  // namespace
 
@@ -30,9 +33,12 @@ std::string bound_command_for(int argc, char** argv) {
       quoted((std::filesystem::path(argv[0]).parent_path() / "nextview_bound").string());
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
-    if (argument == "--out") ++i;
-    if (argument == "--out" || argument.starts_with("--out=")) continue;
-    if (kOfTheRunAlone.contains(argument.substr(0, argument.find('=')))) continue;
+    const std::string name = argument.substr(0, argument.find('='));
+    if (kOfTheRunAlone.contains(name)) continue;
+    if (kOfTheRunAloneWithValue.contains(name)) {
+      if (name == argument) ++i;
+      continue;
+    }
     command += ' ';
     command += quoted(argument);
   }

@@ -11,12 +11,20 @@
 namespace nextview {
 namespace {
 
-run_config_t config_in(const std::filesystem::path& log) {
-  LogReader reader(log);
+run_config_t config_in(const std::filesystem::path& log, const std::optional<RunKey>& key) {
+  LogReader reader(log, key);
   std::string reason;
   while (const auto message = reader.next()) {
     if (message->channel != Channel<run_config_t>::name) continue;
-    const Decoded<run_config_t> decoded = decode_checked<run_config_t>(message->bytes);
+    if (message->signature == Signature::Unchecked) {
+      throw SetupError("--resume: " + log.string() +
+                       " is signed: name the run's key by --key-file");
+    }
+    if (!message->is_authentic()) {
+      reason = " signed by this key (--key-file)";
+      continue;
+    }
+    const Decoded<run_config_t> decoded = decode_checked<run_config_t>(message->message());
     if (!decoded.message) {
       reason = " that this version can read (" + decoded.reason + ")";
       continue;
@@ -35,8 +43,9 @@ run_config_t config_in(const std::filesystem::path& log) {
 
 }  // namespace
 
-EarlierRun::EarlierRun(const std::filesystem::path& log) : reader_(log) {
-  record_.add(config_in(log));
+EarlierRun::EarlierRun(const std::filesystem::path& log, const std::optional<RunKey>& key)
+    : reader_(log, key) {
+  record_.add(config_in(log, key));
   std::int64_t position = 0;
   while (const auto message = reader_.next()) {
     for_each_channel([&]<class Message>() {
@@ -57,7 +66,8 @@ EarlierRun::EarlierRun(const std::filesystem::path& log) : reader_(log) {
 template <class Message>
 void EarlierRun::take_in(const LoggedMessage& message, std::int64_t position) {
   if constexpr (Channel<Message>::answered && !std::is_same_v<Message, run_config_t>) {
-    const Decoded<Message> decoded = decode_checked<Message>(message.bytes);
+    if (!message.is_authentic()) return;
+    const Decoded<Message> decoded = decode_checked<Message>(message.message());
     if (!decoded.message || decoded.message->run != config().run) return;
     try {
       record_.add(*decoded.message);
@@ -86,7 +96,7 @@ void EarlierRun::answer(Bus& bus, const request_t& request) {
         reader_.seek(found->second);
         const auto message = reader_.next();
         if (!message) return;
-        const Decoded<Message> decoded = decode_checked<Message>(message->bytes);
+        const Decoded<Message> decoded = decode_checked<Message>(message->message());
         if (decoded.message) bus.publish(*decoded.message);
       }
       // The log keeps it, so that the bus need not.

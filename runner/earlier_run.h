@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string_view>
 #include <type_traits>
 #include <utility>
@@ -22,10 +23,12 @@ class EarlierRun {
  public:
   /// Reads the log, of which it cuts off what is behind its last whole message, and an end that the
   /// run itself, and not the planner, has put there.
+  /// @param key of the run, without whose signature no message is taken; nothing: it has none
   /// @throws SetupError when the log holds no run's configuration, or was written by another
-  /// version
+  /// version, or its messages are signed and no key is given
   /// @throws LogError when it cannot be read or changed
-  explicit EarlierRun(const std::filesystem::path& log);
+  explicit EarlierRun(const std::filesystem::path& log,
+                      const std::optional<RunKey>& key = std::nullopt);
 
   const run_config_t& config() const { return *record_.config(); }
   /// Without the range images themselves.
@@ -61,8 +64,8 @@ void EarlierRun::tell(const Add& add) {
     for_each_channel([&]<class Message>() {
       if constexpr (requires(RunRecord record, Message told) { record.add(told); } &&
                     !std::is_same_v<Message, run_config_t>) {
-        if (message->channel != Channel<Message>::name) return;
-        const Decoded<Message> decoded = decode_checked<Message>(message->bytes);
+        if (message->channel != Channel<Message>::name || !message->is_authentic()) return;
+        const Decoded<Message> decoded = decode_checked<Message>(message->message());
         if (decoded.message && decoded.message->run == config().run) add(*decoded.message);
       }
     });

@@ -40,7 +40,7 @@ void LogKeeping::ask_for_missed(const RunLog& log, Bus& bus, const HeardRun& hea
 }
 
 void LogKeeping::settle(RunLog& log, Bus& bus, HeardRun& heard) {
-  if (!answers_) answers_.emplace(log.file());
+  if (!answers_) answers_.emplace(log.file(), log.key());
   const int whole = log.record().whole_views();
   if (whole == answers_->views()) return;
   while (answers_->views() < whole) {

@@ -13,7 +13,7 @@
 #include "lcmtypes/open_files.h"
 #include "lcmtypes/standard_output.h"
 #include "runner/exit_status.h"
-#include "runner/private_network.h"
+#include "runner/run_network.h"
 #include "runner/run_signals.h"
 #include "runner/run_supervisor.h"
 
@@ -63,8 +63,9 @@ bool is_over(const nextview::EarlierRun& earlier, const ArtefactFiles& files) {
   return true;
 }
 
-int carry_out(const nextview::RunOptions& options, nextview::RunSetup setup,
-              nextview::RunFolder folder, std::optional<nextview::EarlierRun> earlier,
+int carry_out(const nextview::RunOptions& options, nextview::RunNetwork network,
+              nextview::RunSetup setup, nextview::RunFolder folder,
+              std::optional<nextview::EarlierRun> earlier,
               nextview::RunSupervisor::Clock::time_point start) {
   const ArtefactFiles files(folder.path());
   // Not before: a CAD file may take for ever to read, and until here there is nothing to save.
@@ -73,8 +74,8 @@ int carry_out(const nextview::RunOptions& options, nextview::RunSetup setup,
   nextview::Progress progress(std::cout, ::isatty(STDOUT_FILENO) ? Style::Bar : Style::Lines,
                               setup.config.planner.max_views);
   for (const std::string& warning : setup.warnings) progress.say("warning: " + warning);
-  nextview::RunSupervisor supervisor(options, std::move(setup), std::move(folder),
-                                     std::move(earlier), progress);
+  nextview::RunSupervisor supervisor(options, std::move(network), std::move(setup),
+                                     std::move(folder), std::move(earlier), progress);
   const FinishedRun finished = supervisor.carry_out(start);
   progress.finish();
   const std::string unwritten = write_artefacts(finished, files);
@@ -92,23 +93,29 @@ int carry_out(const nextview::RunOptions& options, nextview::RunSetup setup,
   return status == 0 && !unwritten.empty() ? 1 : status;
 }
 
+int resume(const nextview::RunOptions& options, nextview::RunSupervisor::Clock::time_point start) {
+  auto folder = nextview::RunFolder::of_earlier_run(options.resume);
+  const ArtefactFiles files(folder.path());
+  nextview::EarlierRun earlier(files.log, nextview::run_key_of(options));
+  if (is_over(earlier, files)) return 0;
+  nextview::RunOptions resumed = options;
+  if (!earlier.config().has_scene) resumed.without = {"sensor_sim", "base_sim"};
+  nextview::RunNetwork network = nextview::enter_network(resumed);
+  nextview::RunSetup setup = nextview::set_up_again(earlier.config());
+  nextview::fill_window(setup, options);
+  return carry_out(resumed, std::move(network), std::move(setup), std::move(folder),
+                   std::move(earlier), start);
+}
+
 int run(const nextview::RunOptions& options, nextview::RunSupervisor::Clock::time_point start) {
   const std::string too_few = nextview::too_few_open_files(nextview::kOpenFilesOfRun);
   if (!too_few.empty()) throw nextview::SetupError(too_few);
-  if (!options.resume.empty()) {
-    auto folder = nextview::RunFolder::of_earlier_run(options.resume);
-    const ArtefactFiles files(folder.path());
-    nextview::EarlierRun earlier(files.log);
-    if (is_over(earlier, files)) return 0;
-    nextview::RunSetup setup = nextview::set_up_again(earlier.config());
-    nextview::fill_window(setup, options);
-    nextview::RunOptions resumed = options;
-    if (!earlier.config().has_scene) resumed.without = {"sensor_sim", "base_sim"};
-    return carry_out(resumed, std::move(setup), std::move(folder), std::move(earlier), start);
-  }
+  if (!options.resume.empty()) return resume(options, start);
+  nextview::RunNetwork network = nextview::enter_network(options);
   nextview::RunSetup setup = nextview::prepare_run(options);
   auto folder = nextview::RunFolder::make(options, setup.config.scene_name);
-  return carry_out(options, std::move(setup), std::move(folder), std::nullopt, start);
+  return carry_out(options, std::move(network), std::move(setup), std::move(folder), std::nullopt,
+                   start);
 }
 
 }  // namespace
@@ -122,14 +129,6 @@ int main(int argc, char** argv) {
   if (!options) return exit_status;
   std::signal(SIGPIPE, SIG_IGN);
   try {
-    // Before anything has made a thread.
-    if (options->own_network) {
-      const std::string why_not = nextview::enter_private_network();
-      if (!why_not.empty()) {
-        throw std::runtime_error("--private: there can be no network of its own here (" + why_not +
-                                 "): leave it out");
-      }
-    }
     return run(*options, start);
   } catch (const std::exception& error) {
     std::cerr << "nextview_run: " << error.what() << std::endl;

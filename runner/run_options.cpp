@@ -22,7 +22,7 @@ void check_resume(const CLI::App& app, RunOptions& options) {
   const std::set<std::string> free = {"--resume",  "--without",   "--elsewhere", "--planner",
                                       "--lcm-url", "--patience",  "--cache",     "--no-coverage",
                                       "--verbose", "--real-time", "--view",      "--paused",
-                                      "--window",  "--private"};
+                                      "--window",  "--private",   "--key-file"};
   for (const CLI::Option* option : app.get_options()) {
     if (option->count() == 0 || free.contains(option->get_name())) continue;
     throw CLI::ValidationError(
@@ -112,11 +112,17 @@ void add_run_options(CLI::App& app, RunOptions& options) {
   app.add_flag("--view", options.view,
                "Show the run in a browser, at the address it prints, until Ctrl-C")
       ->group(group);
-  app.add_flag(
-         "--private", options.own_network,
+  app.add_flag_function(
+         "--private,!--no-private",
+         [&options](std::int64_t count) { options.own_network = count > 0; },
          "The processes and the recorder meet in a network of their own, into and out of which "
-         "nothing goes; what joins it is printed")
-      ->excludes(app.get_option("--view"))
+         "nothing goes; what joins it is printed. So they do without being told, where that is "
+         "allowed and neither --lcm-url, --without nor --elsewhere expects anybody from outside")
+      ->group(group);
+  app.add_option("--key-file", options.key_file,
+                 "Every message of the run is signed by this key, and what is not is refused: a "
+                 "file of 32 random bytes or more, for nobody's eyes but yours")
+      ->type_name("FILE")
       ->group(group);
   app.add_flag("--paused", options.paused,
                "With --view: begin when the page says so, with a step or to go on")

@@ -77,8 +77,11 @@ struct RunOptions {
   int stop_window_views = StopParameters{}.stop_window_views;
   double stop_new_area_m2 = StopParameters{}.stop_new_area_m2;
 
-  std::string lcm_url;       ///< empty: LCM_DEFAULT_URL, else a free port of its own
-  bool own_network = false;  ///< the processes meet in a network that nobody else is in
+  std::string lcm_url;  ///< empty: LCM_DEFAULT_URL, else a free port of its own
+  /// The processes meet in a network that nobody else is in. Nothing: where there can be one, and
+  /// nobody is expected from outside.
+  std::optional<bool> own_network;
+  std::string key_file;  ///< by which messages are signed; empty: they are not
   double patience_s = 60.0;
   double real_time = 0.0;  ///< simulated seconds a second, for watching; 0: as fast as it goes
   std::string cache;       ///< where results that take long are kept; empty: see cache_folder

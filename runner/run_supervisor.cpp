@@ -68,14 +68,23 @@ RoleOptions role_options(const RunOptions& options, const RunSetup& setup, std::
   if (part_bytes != kPartBytes) {
     by_role["sensor_sim"].push_back(fmt::format("--part-bytes={}", part_bytes));
   }
+  if (!options.key_file.empty()) {
+    const auto file = std::filesystem::absolute(options.key_file);
+    for (const char* role : {"sensor_sim", "base_sim", "mapper", "planner"}) {
+      by_role[role].push_back("--key-file=" + file.string());
+    }
+  }
   return by_role;
 }
 
 }  // namespace
 
-RunSupervisor::RunSupervisor(const RunOptions& options, RunSetup setup, RunFolder folder,
-                             std::optional<EarlierRun> earlier, Progress& progress)
+RunSupervisor::RunSupervisor(const RunOptions& options, RunNetwork network, RunSetup setup,
+                             RunFolder folder, std::optional<EarlierRun> earlier,
+                             Progress& progress)
     : options_(options),
+      network_(std::move(network)),
+      key_(run_key_of(options)),
       answering_(answering_roles(options.without)),
       setup_(std::move(setup)),
       folder_(std::move(folder)),
@@ -123,7 +132,7 @@ void RunSupervisor::join_bus() {
     port_ = PortLock::acquire();
     lcm_url_ = port_->lcm_url();
   }
-  bus_ = std::make_unique<Bus>(lcm_url_, setup_.config.run, "run");
+  bus_ = std::make_unique<Bus>(lcm_url_, setup_.config.run, "run", key_);
   heard_.on_missing = [this](const request_t& request) {
     if (!log_keeping_.answer(*bus_, request) && earlier_) earlier_->answer(*bus_, request);
   };
@@ -167,10 +176,11 @@ void RunSupervisor::start_up() {
   if (options_.verbose || !options_.without.empty()) {
     progress_.say(fmt::format("bus: {}, run {}", lcm_url_, setup_.config.run));
   }
-  if (options_.own_network) {
-    progress_.say(fmt::format("in a network of its own; to join it: {} COMMAND, such as ./spy '{}'",
-                              command_to_join_network_of(::getpid()), lcm_url_));
+  if (network_.own) {
+    progress_.say(fmt::format("in a network of its own, which ./spy and this join: {} COMMAND",
+                              command_to_join_network_of(::getpid())));
   }
+  if (!network_.note.empty()) progress_.say(network_.note);
 
   for (const std::string& role : options_.elsewhere) {
     progress_.say("start it by hand: " + processes_->command_of(role, reached_));
@@ -204,7 +214,9 @@ void RunSupervisor::start_up() {
 
 void RunSupervisor::start_viewer() {
   if (!options_.view) return;
-  viewer_.emplace(lcm_url_, setup_.config.run, options_.paused);
+  viewer_.emplace(lcm_url_, setup_.config.run, options_.key_file, options_.paused,
+                  network_.page.get());
+  network_.page.reset();
 }
 
 void RunSupervisor::show_until_closed() {
@@ -219,7 +231,7 @@ void RunSupervisor::show_until_closed() {
 
 bool RunSupervisor::recording() {
   if (!log_ && std::filesystem::exists(files_.log)) {
-    log_.emplace(files_.log, setup_.config.run, RangeImages::OnlyCount);
+    log_.emplace(files_.log, setup_.config.run, RangeImages::OnlyCount, key_);
   }
   if (log_) log_->read_on();
   return log_ && log_->counters().ours > logged_before_;

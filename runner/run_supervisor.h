@@ -18,6 +18,7 @@
 #include "runner/port_lock.h"
 #include "runner/replacements.h"
 #include "runner/run_folder.h"
+#include "runner/run_network.h"
 #include "runner/run_processes.h"
 #include "runner/run_scoring.h"
 #include "runner/run_setup.h"
@@ -31,9 +32,10 @@ class RunSupervisor {
  public:
   using Clock = HeardRun::Clock;
 
+  /// @param network that the program has entered
   /// @param folder of the artefacts, which must not hold a log yet
   /// @param earlier the run to be taken up again, whose log it holds; nothing: a new one begins
-  RunSupervisor(const RunOptions& options, RunSetup setup, RunFolder folder,
+  RunSupervisor(const RunOptions& options, RunNetwork network, RunSetup setup, RunFolder folder,
                 std::optional<EarlierRun> earlier, Progress& progress);
   ~RunSupervisor();
 
@@ -69,6 +71,8 @@ class RunSupervisor {
   void make_rows(std::chrono::milliseconds wait_for_scoring = std::chrono::milliseconds(0));
 
   RunOptions options_;
+  RunNetwork network_;
+  std::optional<RunKey> key_;
   std::vector<std::string> answering_;  ///< roles of the processes that answer the planner
   RunSetup setup_;
   RunFolder folder_;

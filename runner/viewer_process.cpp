@@ -1,5 +1,7 @@
 #include "runner/viewer_process.h"
 
+#include <fmt/format.h>
+
 #include <filesystem>
 #include <system_error>
 
@@ -9,15 +11,19 @@
 namespace nextview {
 namespace {
 
-ChildProcess start(const std::string& lcm_url, std::int64_t run, bool paused) {
+ChildProcess start(const std::string& lcm_url, std::int64_t run, const std::string& key_file,
+                   bool paused, int listening) {
   const auto folder = std::filesystem::read_symlink("/proc/self/exe").parent_path();
   std::vector<std::string> command = {(folder / "nextview_viewer").string(), "--attach", lcm_url,
                                       "--run", std::to_string(run)};
+  if (!key_file.empty()) command.insert(command.end(), {"--key-file", key_file});
   if (paused) command.emplace_back("--paused");
+  if (listening >= 0) command.emplace_back(fmt::format("--listening={}", listening));
   try {
     ChildTerms terms;
     terms.at_death = AtParentsDeath::Terminate;
     terms.nice_value = kLookingOnNice;
+    terms.kept_open = listening;
     return {ViewerProcess::kRole, command, terms};
   } catch (const std::system_error& error) {
     throw SetupError(std::string("--view: ") + error.what() +
@@ -28,8 +34,9 @@ ChildProcess start(const std::string& lcm_url, std::int64_t run, bool paused) {
 
 }  // namespace
 
-ViewerProcess::ViewerProcess(const std::string& lcm_url, std::int64_t run, bool paused)
-    : process_(start(lcm_url, run, paused)) {}
+ViewerProcess::ViewerProcess(const std::string& lcm_url, std::int64_t run,
+                             const std::string& key_file, bool paused, int listening)
+    : process_(start(lcm_url, run, key_file, paused, listening)) {}
 
 bool ViewerProcess::running() { return process_.running(); }
 

@@ -13,9 +13,12 @@ class ViewerProcess {
  public:
   static constexpr const char* kRole = "viewer";  ///< on the bus
 
+  /// @param key_file of the run; empty: it has none
   /// @param paused  the run is to wait for the page
+  /// @param listening  a socket for the page (RunNetwork); -1: the viewer opens one
   /// @throws SetupError when it is not there
-  ViewerProcess(const std::string& lcm_url, std::int64_t run, bool paused);
+  ViewerProcess(const std::string& lcm_url, std::int64_t run, const std::string& key_file,
+                bool paused, int listening);
 
   /// Looks whether it still runs, and takes in what it says.
   bool running();

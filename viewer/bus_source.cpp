@@ -3,7 +3,7 @@
 
 #include "lcmtypes/ask_timer.h"
 #include "lcmtypes/bus.h"
-#include "lcmtypes/lcm_transport.h"
+#include "lcmtypes/signed_transport.h"
 #include "viewer/run_follower.h"
 #include "viewer/run_source.h"
 
@@ -14,16 +14,17 @@ using std::chrono::milliseconds;
 using Clock = std::chrono::steady_clock;
 
 /// The run of the first message that can be right.
-std::optional<std::int64_t> run_on(const std::string& lcm_url, const std::stop_token& stop) {
-  LcmTransport transport(lcm_url);
+std::optional<std::int64_t> run_on(const std::string& lcm_url, const std::optional<RunKey>& key,
+                                   const std::stop_token& stop) {
+  const std::unique_ptr<Transport> transport = transport_on(lcm_url, key);
   std::optional<std::int64_t> run;
   for_each_channel([&]<class Message>() {
-    transport.subscribe(Channel<Message>::name, [&run](std::span<const std::uint8_t> bytes) {
+    transport->subscribe(Channel<Message>::name, [&run](std::span<const std::uint8_t> bytes) {
       const Decoded<Message> decoded = decode_checked<Message>(bytes);
       if (decoded.message && !run) run = decoded.message->run;
     });
   });
-  while (!run && !stop.stop_requested()) transport.handle(milliseconds(50));
+  while (!run && !stop.stop_requested()) transport->handle(milliseconds(50));
   return run;
 }
 
@@ -126,14 +127,14 @@ class RunOnBus {
 
 }  // namespace
 
-void follow_bus(const std::string& lcm_url, std::int64_t run, ViewedRun& viewed,
-                const std::stop_token& stop) {
+void follow_bus(const std::string& lcm_url, std::int64_t run, const std::optional<RunKey>& key,
+                ViewedRun& viewed, const std::stop_token& stop) {
   if (run == 0) {
     viewed.set_note("Nothing has been heard of a run yet.");
-    run = run_on(lcm_url, stop).value_or(0);
+    run = run_on(lcm_url, key, stop).value_or(0);
     if (run == 0) return;
   }
-  Bus bus(lcm_url, run, "viewer");
+  Bus bus(lcm_url, run, "viewer", key);
   RunOnBus(bus, viewed).follow(stop);
 }
 

@@ -39,7 +39,7 @@ class LoggedRun {
   }
   template <class Message>
   void hand_on_as(const LoggedMessage& logged) {
-    const Decoded<Message> decoded = decode_checked<Message>(logged.bytes);
+    const Decoded<Message> decoded = decode_checked<Message>(logged.message());
     if (!decoded.message) return;
     if (!run_) run_ = decoded.message->run;
     if (decoded.message->run != run_) return;

@@ -1,9 +1,11 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <stop_token>
 #include <string>
 
+#include "lcmtypes/run_key.h"
 #include "viewer/viewed_run.h"
 
 namespace nextview {
@@ -19,8 +21,9 @@ void follow_log(const std::string& folder_or_log, ViewedRun& viewed, const std::
 /// (pace_t) that the page sets.
 /// @param lcm_url as Bus has it
 /// @param run its number; 0: that of the first message heard
+/// @param key of the run, without whose signature no message is taken; nothing: it has none
 /// @throws BusError when the bus does not work here
-void follow_bus(const std::string& lcm_url, std::int64_t run, ViewedRun& viewed,
-                const std::stop_token& stop);
+void follow_bus(const std::string& lcm_url, std::int64_t run, const std::optional<RunKey>& key,
+                ViewedRun& viewed, const std::stop_token& stop);
 
 }  // namespace nextview

@@ -48,6 +48,11 @@ struct ViewServer::State {
     acceptor.listen();
     port = acceptor.local_endpoint().port();
   }
+  State(std::deque<ServedRun>& served, const std::filesystem::path& folder, ListeningSocket socket)
+      : runs(served), files(page_files(folder)), acceptor(io) {
+    acceptor.assign(tcp::v4(), socket.fd);
+    port = acceptor.local_endpoint().port();
+  }
 
   void accept();
   void pump_all();
@@ -244,7 +249,22 @@ ViewServer::ViewServer(std::deque<ServedRun>& runs, const std::filesystem::path&
     throw std::runtime_error(
         fmt::format("port {} of 127.0.0.1 cannot be had: {}", port, error.code().message()));
   }
-  for (ServedRun& run : runs) {
+  start();
+}
+
+ViewServer::ViewServer(std::deque<ServedRun>& runs, const std::filesystem::path& page,
+                       ListeningSocket socket) {
+  try {
+    state_ = std::make_unique<State>(runs, page, socket);
+  } catch (const boost::system::system_error& error) {
+    throw std::runtime_error(
+        fmt::format("file descriptor {} does not listen: {}", socket.fd, error.code().message()));
+  }
+  start();
+}
+
+void ViewServer::start() {
+  for (ServedRun& run : state_->runs) {
     run.viewed.on_change([this] { notify(); });
   }
   state_->accept();

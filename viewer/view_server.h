@@ -10,6 +10,11 @@
 
 namespace nextview {
 
+/// The file descriptor of a TCP socket that listens on 127.0.0.1, of whatever network.
+struct ListeningSocket {
+  int fd;
+};
+
 /// Serves the page and, at /socket, what it shows. Bound to 127.0.0.1, for pages of its own only
 /// (access.h). One thread serves everybody.
 class ViewServer {
@@ -19,6 +24,10 @@ class ViewServer {
   /// @param port 0: any that is free
   /// @throws std::runtime_error when the port cannot be had
   ViewServer(std::deque<ServedRun>& runs, const std::filesystem::path& page, std::uint16_t port);
+  /// On a socket of somebody else's, which it takes over.
+  /// @throws std::runtime_error when it is none
+  ViewServer(std::deque<ServedRun>& runs, const std::filesystem::path& page,
+             ListeningSocket socket);
   ~ViewServer();
 
   std::uint16_t port() const;
@@ -34,6 +43,8 @@ class ViewServer {
   struct State;  ///< hides Boost's headers
 
  private:
+  void start();
+
   std::unique_ptr<State> state_;
 };
 

@@ -9,12 +9,14 @@
 #include <functional>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <thread>
 #include <vector>
 
 #include "lcmtypes/program_version.h"
 #include "lcmtypes/standard_output.h"
 #include "logger/recovered_run.h"
+#include "viewer/page_port.h"
 #include "viewer/run_source.h"
 #include "viewer/view_server.h"
 
@@ -23,15 +25,14 @@ namespace {
 using nextview::ServedRun;
 using nextview::ViewedRun;
 
-/// Where a browser finds the page again after a restart, if nobody else has it.
-constexpr std::uint16_t kUsualPort = 7660;
-
 struct Options {
   std::vector<std::string> logs;
   std::string attach;
   std::int64_t run = 0;
+  std::string key_file;
   bool paused = false;
   int port = -1;
+  int listening = -1;
   std::string page;
 };
 
@@ -51,12 +52,16 @@ std::string name_of(const std::string& folder_or_log) {
 std::unique_ptr<nextview::ViewServer> make_server(std::deque<ServedRun>& runs,
                                                   const Options& options) {
   const std::string page = options.page.empty() ? page_folder() : options.page;
+  if (options.listening >= 0) {
+    return std::make_unique<nextview::ViewServer>(runs, page,
+                                                  nextview::ListeningSocket{options.listening});
+  }
   if (options.port >= 0) {
     return std::make_unique<nextview::ViewServer>(runs, page,
                                                   static_cast<std::uint16_t>(options.port));
   }
   try {
-    return std::make_unique<nextview::ViewServer>(runs, page, kUsualPort);
+    return std::make_unique<nextview::ViewServer>(runs, page, nextview::kPagePort);
   } catch (const std::runtime_error&) {
     return std::make_unique<nextview::ViewServer>(runs, page, 0);
   }
@@ -91,6 +96,8 @@ void show(const Options& options) {
     viewed.set_pausable();
     if (options.paused) viewed.set_pace(0);
   }
+  std::optional<nextview::RunKey> key;
+  if (!options.key_file.empty()) key = nextview::RunKey::read(options.key_file);
   const auto server = make_server(runs, options);
   std::vector<std::jthread> followers;
   for (std::size_t i = 0; i < options.logs.size(); ++i) {
@@ -99,8 +106,8 @@ void show(const Options& options) {
     }));
   }
   if (!options.attach.empty()) {
-    followers.push_back(follow(runs.back().viewed, [&options](auto& viewed, auto& stop) {
-      nextview::follow_bus(options.attach, options.run, viewed, stop);
+    followers.push_back(follow(runs.back().viewed, [&options, key](auto& viewed, auto& stop) {
+      nextview::follow_bus(options.attach, options.run, key, viewed, stop);
     }));
   }
   server->end_on_signals();
@@ -122,10 +129,15 @@ int main(int argc, char** argv) {
                  "nextview_run --verbose says it");
   app.add_option("--run", options.run, "With --attach: its number; default: the first one heard")
       ->check(CLI::PositiveNumber);
+  app.add_option("--key-file", options.key_file, "With --attach: the key of a run that has one");
   app.add_flag("--paused", options.paused,
                "With --attach: the run waits from the start until the page lets it go on");
   app.add_option("--port", options.port, "Port of the page; default 7660 if it is free, 0: any")
       ->check(CLI::Range(0, 65535));
+  app.add_option("--listening", options.listening,
+                 "In place of --port: a socket that listens already, as ./run --view has made it "
+                 "outside its own network")
+      ->check(CLI::NonNegativeNumber);
   app.add_option("--page", options.page, "Folder of the built page; default: as it was built");
   app.set_version_flag("--version", "nextview_viewer " + std::string(nextview::program_version()));
   CLI11_PARSE(app, argc, argv);

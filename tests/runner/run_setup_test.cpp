@@ -323,6 +323,9 @@ TEST(BoundCommand, IsWhatHasBeenTypedWithoutTheFolder) {
   EXPECT_EQ(
       command_of({"nextview_run", "boxes", "--view", "--paused", "--real-time=8", "--seed=2"}),
       "nextview_bound boxes --seed=2");
+  EXPECT_EQ(command_of({"nextview_run", "--no-private", "--key-file", "k", "--lcm-url=u",
+                        "--seed=2", "--no-coverage", "--patience", "9"}),
+            "nextview_bound --seed=2");
   EXPECT_EQ(command_of({"nextview_run", "it's.obj"}), "nextview_bound 'it'\\''s.obj'");
 }
 

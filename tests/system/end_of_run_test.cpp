@@ -153,7 +153,7 @@ TEST_F(LongRun, SaysWhomItWaitsFor) {
 
 // A stop of another version's planner, as far as the run can tell.
 TEST_F(LongRun, NamesAReasonToStopThatItDoesNotKnow) {
-  start({"--verbose"});
+  start({"--verbose", "--no-private"});
   std::smatch bus;
   ASSERT_TRUE(std::regex_search(run_->output(), bus, std::regex("bus: (\\S+), run (\\d+)")))
       << run_->output();

@@ -47,7 +47,7 @@ const std::map<std::string, Arrows> kArrows = {
     {"runner",
      {{},
       {"sensor", "scene", "sensor_sim", "base_sim", "mapper", "planner", "logger", "scoring",
-       "reports"},
+       "reports", "viewer"},
       OnTheBus::Whole}},
 };
 

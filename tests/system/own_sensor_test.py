@@ -106,7 +106,7 @@ class Examples(unittest.TestCase):
         for name, more in (("steps", []), ("whole", ["--all"])):
             with self.subTest(asks=name):
                 run, bus = self.start("followed-" + name, ["boxes", "--views", str(VIEWS), "--no-coverage", "--verbose",
-                                                           SLOWLY])
+                                                           "--no-private", SLOWLY])
                 followed = subprocess.run([*self.example("follow_map.py"), *bus, *more], env=self.python,
                                           capture_output=True, text=True)
                 self.end(run)

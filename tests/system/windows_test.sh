@@ -33,6 +33,25 @@ there_is '12 lcm-logger --quiet --lcm-url=udpm://239.255.76.67:7701?ttl=0 -f /tm
 there_is '12 lcm-logger /tmp/a'
 [ "$(url_in_progress)" = '<>' ] || die "with one of somebody else: $(url_in_progress)"
 
+# A run in a network of its own is joined, another is not.
+joining() {
+  bash -c 'set -euo pipefail; root=$1; source "$root/.ci/set-up.sh"; echo "<$(command_to_join "$2")>"' - "$repository" "$1"
+}
+url='udpm://239.255.76.67:7701?ttl=0'
+there_is "$$ lcm-logger --lcm-url=$url -f /tmp/a"
+[ "$(joining "$url")" = '<>' ] || die "in this network: $(joining "$url")"
+[ "$(joining 'udpm://239.255.76.67:7702?ttl=0')" = '<>' ] || die "another run's: $(joining "$url")"
+if unshare --net true 2> /dev/null; then
+  unshare --net sleep 60 &
+  apart=$!
+  trap 'kill "$apart"; rm -rf "$folder"' EXIT
+  until [ "$(readlink "/proc/$apart/ns/net")" != "$(readlink /proc/self/ns/net)" ]; do sleep 0.01; done
+  there_is "$apart lcm-logger --lcm-url=$url -f /tmp/a"
+  [[ "$(joining "$url")" == *nsenter*"$apart"*--net* ]] || die "in a network of its own: $(joining "$url")"
+else
+  echo "skipped: this user may not make a network, so ./spy was not seen to join one"
+fi
+
 # Nothing is installed or built for a window that has no screen.
 log=$folder/run.lcmlog
 touch "$log"

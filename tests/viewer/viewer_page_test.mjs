@@ -365,7 +365,7 @@ test('a run that is watched, paused and stepped, and is the same', async () => {
 });
 
 test('a run that is under way is caught up with', async () => {
-  const run = start('run', ...run_options('joined', 1), '--view', '--paused', '--verbose');
+  const run = start('run', ...run_options('joined', 1), '--view', '--paused', '--verbose', '--no-private');
   const [, url] = await run.says(/bus: (\S+), run/);
   const [first] = await run.says(/http:\/\/127\.0\.0\.1:\d+\//);
   const one = await new_page(first);
