@@ -13,6 +13,7 @@
 #include "lcmtypes/transport.h"
 #include "runner/child_process.h"
 #include "runner/port_lock.h"
+#include "runner/private_network.h"
 #include "scoring/kept_file.h"
 
 namespace nextview {
@@ -60,13 +61,24 @@ Finding port() {
   }
 }
 
+Finding network() {
+  const std::string why_not = why_no_private_network();
+  if (why_not.empty()) return {"network", true, "a run can have one of its own"};
+  return {"network", true,
+          "a run can have none of its own (" + why_not +
+              "): others on this machine can speak on its bus, and its recorder hears the network"};
+}
+
 Finding multicast() {
   try {
     const PortLock lock = PortLock::acquire();
     probe_multicast(lock.lcm_url());
     return {"multicast", true, "what is sent to " + lock.lcm_url() + " comes back"};
   } catch (const std::exception& error) {
-    return {"multicast", false, error.what()};
+    const bool needed = !why_no_private_network().empty();
+    return {
+        "multicast", !needed,
+        std::string(needed ? "" : "only in a network of a run's own; for others: ") + error.what()};
   }
 }
 
@@ -108,8 +120,8 @@ Finding cache(const std::string& given) {
 }  // namespace
 
 std::vector<Finding> examine_machine(const std::string& cache_option) {
-  return {programs(),   recorder(),         port(), multicast(), socket_buffers(),
-          open_files(), cache(cache_option)};
+  return {programs(),  recorder(),       port(),       network(),
+          multicast(), socket_buffers(), open_files(), cache(cache_option)};
 }
 
 bool show_findings(std::ostream& to, const std::vector<Finding>& findings) {

@@ -7,8 +7,10 @@
 #include <sched.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <cstring>
 #include <fstream>
@@ -68,6 +70,17 @@ std::string enter_private_network() {
   std::string why = std::string("its loopback: ") + std::strerror(errno);
   ::setns(before.get(), CLONE_NEWNET);
   return why;
+}
+
+std::string why_no_private_network() {
+  const pid_t child = ::fork();
+  if (child < 0) return std::strerror(errno);
+  if (child == 0) ::_exit(enter_private_network().empty() ? 0 : std::max(errno, 1));
+  int status = 0;
+  while (::waitpid(child, &status, 0) < 0 && errno == EINTR) {
+  }
+  if (!WIFEXITED(status)) return "it cannot be tried";
+  return WEXITSTATUS(status) == 0 ? std::string() : std::strerror(WEXITSTATUS(status));
 }
 
 std::string command_to_join_network_of(long pid) {
