@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "exporter/export_formats.h"
+#include "lcmtypes/nearest_option.h"
 #include "lcmtypes/program_version.h"
 #include "lcmtypes/standard_output.h"
 
@@ -76,6 +77,7 @@ int main(int argc, char** argv) {
                "Voxels and octomap.bt: fill holes of one voxel, as meshes always have them; among "
                "voxels they are told by a field of their own");
   app.add_option("--run", options.run, "Which run, when the log holds several");
+  app.failure_message(nextview::what_is_wrong);
   app.set_version_flag("--version", "nextview_export " + std::string(nextview::program_version()));
   app.footer(format_list());
   CLI11_PARSE(app, argc, argv);

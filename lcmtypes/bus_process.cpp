@@ -6,6 +6,7 @@
 #include <iostream>
 #include <optional>
 
+#include "lcmtypes/nearest_option.h"
 #include "lcmtypes/parameter_bounds.h"
 #include "lcmtypes/program_version.h"
 #include "lcmtypes/serve.h"
@@ -55,6 +56,7 @@ int run_bus_process(int argc, char** argv, const std::string& role, const std::s
                  "The run's key: what is said is signed by it, and what is heard must be");
   if (add_options) add_options(app);
   const std::string program = std::filesystem::path(argv[0]).filename();
+  app.failure_message(what_is_wrong);
   app.set_version_flag("--version", program + " " + std::string(program_version()));
   app.footer(
       "Everything else comes from the run's configuration, NEXTVIEW_RUN_CONFIG on the bus,\n"

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <utility>
 
+#include "lcmtypes/nearest_option.h"
 #include "lcmtypes/program_version.h"
 #include "lcmtypes/standard_output.h"
 #include "logger/recovered_run.h"
@@ -119,6 +120,7 @@ int main(int argc, char** argv) {
   std::string key_file;
   app.add_option("--key-file", key_file,
                  "The key of a run that had one: messages that it has not signed are left out");
+  app.failure_message(nextview::what_is_wrong);
   app.set_version_flag("--version", "nextview_replay " + std::string(nextview::program_version()));
   app.footer(
       "Exit status: 0 when all of it agrees; 1 when something differs, or the log cannot be read;\n"

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <stdexcept>
 
+#include "lcmtypes/nearest_option.h"
 #include "lcmtypes/program_version.h"
 #include "lcmtypes/standard_output.h"
 #include "logger/recovered_run.h"
@@ -41,6 +42,7 @@ int main(int argc, char** argv) {
       "--out", file,
       "HTML file to write; default report.html in the folder of the only run, of several "
       "comparison.html where you are");
+  app.failure_message(nextview::what_is_wrong);
   app.set_version_flag("--version", "nextview_report " + std::string(nextview::program_version()));
   CLI11_PARSE(app, argc, argv);
   try {

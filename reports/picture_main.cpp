@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "lcmtypes/nearest_option.h"
 #include "lcmtypes/program_version.h"
 #include "lcmtypes/standard_output.h"
 #include "logger/recovered_run.h"
@@ -114,6 +115,7 @@ int main(int argc, char** argv) {
   app.add_option("--height", view.height, "Pixels")
       ->check(CLI::Range(16, 8192))
       ->capture_default_str();
+  app.failure_message(nextview::what_is_wrong);
   app.set_version_flag("--version", "nextview_picture " + std::string(nextview::program_version()));
   CLI11_PARSE(app, argc, argv);
   try {

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "lcmtypes/nearest_option.h"
 #include "lcmtypes/program_version.h"
 #include "lcmtypes/standard_output.h"
 #include "logger/run_log.h"
@@ -26,6 +27,7 @@ int main(int argc, char** argv) {
                  "Which view's; default: among the first 15 the one for which most positions were "
                  "tried")
       ->check(CLI::Range(2, 1000000));
+  app.failure_message(nextview::what_is_wrong);
   app.set_version_flag("--version", "nextview_search " + std::string(nextview::program_version()));
   CLI11_PARSE(app, argc, argv);
   const std::filesystem::path file = std::filesystem::path(folder) / "run.lcmlog";

@@ -4,10 +4,10 @@
 #include <iostream>
 #include <set>
 
+#include "lcmtypes/nearest_option.h"
 #include "lcmtypes/parameter_bounds.h"
 #include "lcmtypes/program_version.h"
 #include "runner/bound_command.h"
-#include "runner/nearest_option.h"
 #include "runner/option_groups.h"
 #include "runner/scene_file.h"
 #include "scene/mesh_file.h"
@@ -36,18 +36,6 @@ std::string data_folder(const std::string& name, const char* of_sources) {
   const fs::path bin = fs::read_symlink("/proc/self/exe").parent_path();
   const fs::path installed = bin.parent_path() / NEXTVIEW_DATA_FOLDER / name;
   return fs::is_directory(installed) ? installed.string() : of_sources;
-}
-
-// What CLI11 says of a wrong command line, and which options may have been meant.
-std::string what_is_wrong(const CLI::App* app, const CLI::Error& error) {
-  std::string text = CLI::FailureMessage::simple(app, error);
-  for (const std::string& typed : app->remaining()) {
-    if (!typed.starts_with("--")) continue;
-    const std::string name = typed.substr(2, typed.find('=') - 2);
-    text += fmt::format("No option --{}; did you mean --{}?\n", name,
-                        nearest_option(*app, name, "help"));
-  }
-  return text;
 }
 
 }  // namespace

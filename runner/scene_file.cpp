@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <vector>
 
-#include "runner/nearest_option.h"
+#include "lcmtypes/nearest_option.h"
 #include "scene/mesh_file.h"
 
 namespace nextview {

@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "lcmtypes/nearest_option.h"
 #include "lcmtypes/program_version.h"
 #include "lcmtypes/standard_output.h"
 #include "logger/recovered_run.h"
@@ -139,6 +140,7 @@ int main(int argc, char** argv) {
                  "outside its own network")
       ->check(CLI::NonNegativeNumber);
   app.add_option("--page", options.page, "Folder of the built page; default: as it was built");
+  app.failure_message(nextview::what_is_wrong);
   app.set_version_flag("--version", "nextview_viewer " + std::string(nextview::program_version()));
   CLI11_PARSE(app, argc, argv);
   try {

@@ -4,6 +4,7 @@
 #include <iostream>
 #include <iterator>
 
+#include "lcmtypes/nearest_option.h"
 #include "lcmtypes/program_version.h"
 #include "lcmtypes/standard_output.h"
 #include "tests/logger/log_mutations.h"
@@ -63,6 +64,7 @@ int main(int argc, char** argv) {
       "Changes one thing in the log of a run, a thousand times by chance, and counts what a "
       "replay\n"
       "makes of it. Exit status 1 when one passes unnoticed.\n"};
+  app.failure_message(nextview::what_is_wrong);
   app.set_version_flag("--version",
                        "nextview_mutations " + std::string(nextview::program_version()));
   std::string file;

@@ -1,6 +1,6 @@
 #!/bin/bash
 # versions_test.sh BUILD SOURCES: every program there is, built, Python or shell, tells the same version, and those
-# that were built the same commit.
+# that were built the same commit, and what option was meant by a mistyped one.
 set -euo pipefail
 build=$1 sources=$2
 folder=$(mktemp -d)
@@ -32,6 +32,12 @@ for program in "$build"/bin/*; do
   [ "$said" = "$name $version" ] || fail "$name --version: $said, where nextview says $version"
   ! "$program" --version > /dev/full 2> "$folder/said" || fail "$name says that all is well to a full disk"
   grep -q "^$name: .*standard output" "$folder/said" || fail "$name: a full disk: $(cat "$folder/said")"
+  # All but those that have no others name the option that a mistyped one was meant to be.
+  said=$("$program" --vershion 2>&1) && fail "$name takes --vershion"
+  case "$name" in
+    nextview | nextview_cad_reader | file_driver) ;;
+    *) [[ $said == *"No option --vershion; did you mean --version?"* ]] || fail "$name --vershion: $said" ;;
+  esac
   built=$((built + 1))
 done
 [ "$built" -ge 14 ] || fail "only $built programs in $build/bin"

@@ -10,4 +10,8 @@ namespace nextview {
 /// @param otherwise taken when no option is nearer than it
 std::string nearest_option(const CLI::App& app, const std::string& typed, std::string otherwise);
 
+/// What CLI11 says of a wrong command line, and which options may have been meant. For
+/// CLI::App::failure_message, of every program.
+std::string what_is_wrong(const CLI::App* app, const CLI::Error& error);
+
 }  // namespace nextview

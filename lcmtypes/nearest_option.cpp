@@ -1,4 +1,6 @@
-#include "runner/nearest_option.h"
+#include "lcmtypes/nearest_option.h"
+
+#include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
@@ -35,6 +37,17 @@ std::string nearest_option(const CLI::App& app, const std::string& typed, std::s
     }
   }
   return nearest;
+}
+
+std::string what_is_wrong(const CLI::App* app, const CLI::Error& error) {
+  std::string text = CLI::FailureMessage::simple(app, error);
+  for (const std::string& typed : app->remaining()) {
+    if (!typed.starts_with("--")) continue;
+    const std::string name = typed.substr(2, typed.find('=') - 2);
+    text += fmt::format("No option --{}; did you mean --{}?\n", name,
+                        nearest_option(*app, name, "help"));
+  }
+  return text;
 }
 
 }  // namespace nextview
