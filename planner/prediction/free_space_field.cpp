@@ -51,10 +51,8 @@ std::uint8_t FreeSpaceField::byte_of(Label label) {
   throw std::logic_error("a label that does not exist");
 }
 
-FreeSpaceField::FreeSpaceField(const VoxelMap& map, int threads)
-    : window_(map.window()),
-      cells_(map.window().size + VoxelIndex::Constant(2)),
-      threads_(threads) {
+FreeSpaceField::FreeSpaceField(const MapWindow& window, std::uint8_t everywhere, int threads)
+    : window_(window), cells_(window.size + VoxelIndex::Constant(2)), threads_(threads) {
   cells_[0] = round_up(cells_[0]);
   int bits = 0;
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -64,7 +62,15 @@ FreeSpaceField::FreeSpaceField(const VoxelMap& map, int threads)
   if (bits > 30) {
     throw std::invalid_argument("the map's window is too large to plan in: choose larger voxels");
   }
-  bytes_ = all_unseen();
+  bytes_ = filled_with(everywhere);
+}
+
+FreeSpaceField FreeSpaceField::all_empty(const MapWindow& window, int threads) {
+  return {window, byte_of(Label::Empty), threads};
+}
+
+FreeSpaceField::FreeSpaceField(const VoxelMap& map, int threads)
+    : FreeSpaceField(map.window(), kUnseen, threads) {
   Box empty{cells_, VoxelIndex::Zero()};
   map.for_each_marked([&](std::size_t slot, Label label) {
     const VoxelIndex index = map.index_of_slot(slot);
@@ -76,13 +82,13 @@ FreeSpaceField::FreeSpaceField(const VoxelMap& map, int threads)
   find_distances(empty);
 }
 
-LazyArray<std::uint8_t> FreeSpaceField::all_unseen() const {
+LazyArray<std::uint8_t> FreeSpaceField::filled_with(std::uint8_t everywhere) const {
   const auto layer_bytes = std::size_t{1} << shift_[2];
   std::vector<std::byte> layer(layer_bytes, std::byte{kOutside});
   for (int y = 0; y < window_.size[1]; ++y) {
     const std::size_t begin = (static_cast<std::size_t>(y + 1) << shift_[1]) + 1;
     std::fill_n(layer.begin() + static_cast<std::ptrdiff_t>(begin), window_.size[0],
-                std::byte{kUnseen});
+                std::byte{everywhere});
   }
   const std::vector<std::byte> outside(1, std::byte{kOutside});
   const LazyPages::Stretch stretches[] = {

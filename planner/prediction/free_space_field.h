@@ -41,6 +41,11 @@ class FreeSpaceField {
   /// @param threads how many may work at a time, here and in update(), at least 1
   /// @throws std::invalid_argument when it would need 2 GiB or more
   explicit FreeSpaceField(const VoxelMap& map, int threads = 1);
+  /// The field of a window in which all is Empty, and of which only what update() changes takes
+  /// memory: distances are those above around what has changed, and 1 elsewhere, which holds
+  /// everywhere and lets a walk go on step by step.
+  /// @throws std::invalid_argument as above
+  static FreeSpaceField all_empty(const MapWindow& window, int threads = 1);
 
   /// Follows the map after a change of the labels at these slots (and of no others) or, and, a move
   /// of its window: then they are those of voxels that were inside before and still are.
@@ -87,8 +92,10 @@ class FreeSpaceField {
     }
   };
 
+  FreeSpaceField(const MapWindow& window, std::uint8_t everywhere, int threads);
+
   static std::uint8_t byte_of(Label label);
-  LazyArray<std::uint8_t> all_unseen() const;
+  LazyArray<std::uint8_t> filled_with(std::uint8_t everywhere) const;
   std::uint8_t* row(int y, int z) {
     return &bytes_[(static_cast<std::size_t>(y) << shift_[1]) +
                    (static_cast<std::size_t>(z) << shift_[2])];

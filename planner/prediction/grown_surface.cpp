@@ -18,7 +18,7 @@ constexpr std::int8_t kMaxEmpty = 2;  // voxels a plane bridges
 GrownSurface::GrownSurface(const VoxelMap& map)
     : reach_(std::max(1, static_cast<int>(kReach_m / map.grid().voxel_size_m))),
       expected_(map.grid(), map.window(), Label::Empty),
-      field_(expected_),
+      field_(FreeSpaceField::all_empty(map.window())),
       with_unknown_(map.grid(), map.window()),
       unknown_too_(with_unknown_) {
   const double decay = kDecay_m / map.grid().voxel_size_m;
@@ -164,6 +164,11 @@ void GrownSurface::step_from(const VoxelMap& map, const Growing& at, std::size_t
       }
     }
   }
+}
+
+std::size_t GrownSurface::memory_bytes() const {
+  return expected_.memory_bytes() + field_.memory_bytes() + with_unknown_.memory_bytes() +
+         unknown_too_.memory_bytes() + likelihood_.memory_bytes();
 }
 
 }  // namespace nextview

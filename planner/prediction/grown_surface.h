@@ -47,6 +47,8 @@ class GrownSurface {
   std::size_t size() const { return grown_.size(); }
   /// Those grown voxels that are Empty: there a ray meets something that the map says is not there.
   const std::vector<VoxelIndex>& bridges() const { return bridges_; }
+  /// Of what is kept for each voxel of the window: it grows with what was seen.
+  std::size_t memory_bytes() const;
 
  private:
   struct Plane {

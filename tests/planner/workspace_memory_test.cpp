@@ -6,6 +6,7 @@
 #include <string>
 
 #include "mapper/map_builder.h"
+#include "planner/prediction/grown_surface.h"
 #include "planner/prediction/known_space.h"
 #include "planner/shortest_paths.h"
 #include "tests/mapper/analytic_world.h"
@@ -50,6 +51,34 @@ TEST(WorkspaceMemory, IsOfWhatWasSeen) {
   EXPECT_EQ(in_200_m.positions, in_20_m.positions);
   EXPECT_GT(in_20_m.positions, 1000u);
   // A hundred times the workspace: filled it would be 6 GB.
+  EXPECT_LT(in_200_m.bytes, std::size_t{150} << 20);
+}
+
+// What grows from floor and ceiling into the unknown, after one look around between them.
+struct Grown {
+  std::size_t bytes = 0;
+  std::size_t voxels = 0;
+};
+Grown grown_in(int half_side) {
+  const VoxelIndex half(half_side, half_side, 50);
+  MapBuilder builder({0.1, Eigen::Vector3d::Zero()}, {-half, 2 * half});
+  AnalyticWorld world;
+  world.planes = {{Eigen::Vector3d::UnitZ(), -1.2}, {Eigen::Vector3d::UnitZ(), 1.2}};
+  builder.fold(scan_world(world,
+                          make_ray_table(SphericalScanner{128, 64, 2 * std::numbers::pi, 1.7}),
+                          {0.05, 4.0}, SensorPose()));
+  const GrownSurface grown(builder.map());
+  return {grown.memory_bytes(), grown.size()};
+}
+
+TEST(WorkspaceMemory, OfWhatIsExpectedBehindTheUnknownIsOfWhatWasSeen) {
+  const Grown in_20_m = grown_in(100);
+  const Grown in_200_m = grown_in(1000);
+  std::cout << in_20_m.bytes / 1000 << " kB in 20 m x 20 m x 10 m, " << in_200_m.bytes / 1000
+            << " kB in 200 m x 200 m x 10 m; " << in_20_m.voxels << " voxels grown\n";
+  EXPECT_EQ(in_200_m.voxels, in_20_m.voxels);
+  EXPECT_GT(in_20_m.voxels, 1000u);
+  // Filled it would be 6 GB.
   EXPECT_LT(in_200_m.bytes, std::size_t{150} << 20);
 }
 

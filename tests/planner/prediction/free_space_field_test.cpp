@@ -123,6 +123,42 @@ TEST(FreeSpaceField, FollowsRandomChangesOfTheMap) {
   EXPECT_EQ(updates, 48);
 }
 
+// A field that began without distances has the true ones where they can have changed, and elsewhere
+// none that leads past anything.
+TEST(FreeSpaceField, OneThatBeginsAllEmptyHasDistancesAroundWhatChanged) {
+  std::mt19937 random(11);
+  VoxelMap map = empty_map({-7, 3, -2}, {110, 14, 12});
+  FreeSpaceField field = FreeSpaceField::all_empty(map.window());
+  for_each_voxel(with_layer(map.window()), [&](const VoxelIndex& voxel) {
+    ASSERT_EQ(field.at(voxel), map.contains(voxel) ? 1 : FreeSpaceField::kOutside);
+  });
+  const auto below = [&random](int n) {
+    return static_cast<int>(random() % static_cast<unsigned>(n));
+  };
+  const VoxelIndex corner(10, 5, 0);
+  for (int round = 0; round < 3; ++round) {
+    std::vector<std::uint32_t> changed;
+    for (int i = 0; i < 6; ++i) {
+      const VoxelIndex index = corner + VoxelIndex(below(10), below(10), below(10));
+      if (map.label(index) != Label::Empty) continue;
+      map.set_label(index, static_cast<Label>(below(5)));
+      changed.push_back(static_cast<std::uint32_t>(map.slot(index)));
+    }
+    field.update(map, changed);
+    int step_by_step = 0;
+    for_each_voxel(with_layer(map.window()), [&](const VoxelIndex& voxel) {
+      const std::uint8_t expected = expected_byte(map, voxel);
+      if (field.at(voxel) == expected) return;
+      ASSERT_EQ(field.at(voxel), 1);
+      ASSERT_LE(expected, FreeSpaceField::kMaxJump);
+      // More than a jump away from what changed, whole vectors of a row considered.
+      ASSERT_GT((voxel - corner).cwiseAbs().maxCoeff(), FreeSpaceField::kMaxJump - 1);
+      ++step_by_step;
+    });
+    EXPECT_GT(step_by_step, 0);
+  }
+}
+
 // Changes of labels and moves of the window, one after the other; a move is told together with the
 // changes it brings about, and sometimes with others from after it.
 TEST(FreeSpaceField, FollowsAWindowThatMoves) {
