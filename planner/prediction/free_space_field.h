@@ -23,12 +23,12 @@ namespace nextview {
 ///                                           Empty too, so a line may advance d steps at once
 ///
 /// d is the Chebyshev distance to the nearest voxel that is not Empty, or kMaxJump when that is
-/// farther. Of the bytes that end a walk the bits of kMaxJump are 0: a walk adds them to its steps
-/// without asking. The sides of the field are powers of two, so an offset is made by shifts; unlike
-/// the map's buffer it has a layer around the window, so that a walk needs no test for the limit.
-/// Only the box around what changed is worked out again (chebyshev_distance.h), and what nobody has
-/// seen takes no memory (lazy_array.h). So the field keeps
-/// its own layout, relative to the window; when that moves, what stays is copied.
+/// farther (of all_empty() it may be less). Of the bytes that end a walk the bits of kMaxJump are
+/// 0: a walk adds them to its steps without asking. The sides of the field are powers of two, so an
+/// offset is made by shifts; unlike the map's buffer it has a layer around the window, so that a
+/// walk needs no test for the limit. Only the box around what changed is worked out again
+/// (chebyshev_distance.h), and what nobody has seen takes no memory (lazy_array.h). So the field
+/// keeps its own layout, relative to the window; when that moves, what stays is copied.
 class FreeSpaceField {
  public:
   static constexpr std::uint8_t kMaxJump = ChebyshevDistance::kLargest;
